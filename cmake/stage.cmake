@@ -1,0 +1,48 @@
+# stereovox_stage(<name> SOURCES ... [TESTS ...] [LINKS ...] [PRIVATE_LINKS ...])
+#
+# One folder of src/stereovox = one static library stereovox::<name> = one test program <name>_test.
+
+add_library(stereovox_options INTERFACE)
+target_compile_features(stereovox_options INTERFACE cxx_std_20)
+# Fused multiply-adds would make results depend on the compiler and the machine.
+target_compile_options(stereovox_options INTERFACE -ffp-contract=off)
+
+add_library(stereovox_build_options INTERFACE)
+target_link_libraries(stereovox_build_options INTERFACE stereovox_options)
+target_compile_options(stereovox_build_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual
+  -Wimplicit-fallthrough -Wunused $<$<BOOL:${STEREOVOX_WARNINGS_AS_ERRORS}>:-Werror>)
+if(STEREOVOX_ASSERTIONS)
+  target_compile_options(stereovox_build_options INTERFACE -UNDEBUG)
+endif()
+if(STEREOVOX_SANITIZER)
+  target_compile_options(stereovox_build_options INTERFACE
+    -fsanitize=${STEREOVOX_SANITIZER} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(stereovox_build_options INTERFACE -fsanitize=${STEREOVOX_SANITIZER})
+endif()
+
+function(stereovox_stage name)
+  cmake_parse_arguments(STAGE "" "" "SOURCES;TESTS;LINKS;PRIVATE_LINKS" ${ARGN})
+  set(target stereovox_${name})
+  add_library(${target} STATIC ${STAGE_SOURCES})
+  add_library(stereovox::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
+  target_link_libraries(${target} PUBLIC stereovox_options ${STAGE_LINKS}
+    PRIVATE ${STAGE_PRIVATE_LINKS} $<BUILD_INTERFACE:stereovox_build_options>)
+  set_property(GLOBAL APPEND PROPERTY STEREOVOX_STAGES ${target})
+  if(STEREOVOX_TESTS AND STAGE_TESTS)
+    stereovox_test(${name}_test SOURCES ${STAGE_TESTS} LINKS ${target} ${STAGE_PRIVATE_LINKS})
+  endif()
+endfunction()
+
+# stereovox_test(<program> SOURCES ... [LINKS ...]): a GoogleTest program; every TEST is a ctest entry.
+function(stereovox_test program)
+  cmake_parse_arguments(TEST "" "" "SOURCES;LINKS" ${ARGN})
+  add_executable(${program} ${TEST_SOURCES})
+  target_link_libraries(${program} PRIVATE ${TEST_LINKS} stereovox_build_options GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${program} PRIVATE
+    STEREOVOX_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STEREOVOX_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
+  gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60)
+endfunction()

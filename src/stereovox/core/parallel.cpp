@@ -1,0 +1,17 @@
+#include "stereovox/core/parallel.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace stereovox {
+
+void parallel_for(int begin, int end, int threads, const std::function<void(int)>& body) {
+  if (threads <= 1 || end - begin <= 1) {
+    for (int i = begin; i < end; ++i) body(i);
+    return;
+  }
+  tbb::task_arena arena(threads);
+  arena.execute([&] { tbb::parallel_for(begin, end, body); });
+}
+
+}  // namespace stereovox
