@@ -1,0 +1,108 @@
+#include "stereovox/stereo/matcher.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "stereovox/core/error.h"
+#include "stereovox/stereo/disparity_picture.h"
+#include "stereovox/stereo/synthetic_pair_for_test.h"
+
+namespace stereovox {
+namespace {
+
+const cv::Size kSize(320, 240);
+
+double slanted(int u, int v) { return 20.0 + 0.03 * u - 0.04 * v; }
+
+class EveryMatcher : public testing::TestWithParam<MatcherParams> {};
+
+INSTANTIATE_TEST_SUITE_P(Matchers, EveryMatcher,
+                         testing::Values(SemiGlobalMatchingParams{}, BlockMatchingParams{}),
+                         [](const auto& matcher) {
+                           return std::visit([](const auto& p) { return std::string(p.kName); },
+                                             matcher.param);
+                         });
+
+double share_right(const DisparityImage& found, cv::Rect where, double tolerance_px) {
+  int right = 0;
+  for (int v = where.y; v < where.br().y; ++v)
+    for (int u = where.x; u < where.br().x; ++u)
+      right += std::abs(found.disparity_px(v, u) - slanted(u, v)) < tolerance_px ? 1 : 0;
+  return static_cast<double>(right) / where.area();
+}
+
+TEST_P(EveryMatcher, FindsASlantedPlaneToAFractionOfAPixel) {
+  const DisparityImage found = match(synthetic_pair(kSize, slanted), GetParam());
+  EXPECT_GT(share_right(found, {64, 16, 240, 208}, 0.5), 0.95);
+}
+
+TEST_P(EveryMatcher, MatchesTheLeftBorderAsFarAsTheRightImageReaches) {
+  const DisparityImage found = match(synthetic_pair(kSize, slanted), GetParam());
+  EXPECT_GT(share_right(found, {36, 16, 28, 208}, 0.5), 0.85)
+      << "columns right of the largest true disparity, left of the searched range";
+}
+
+TEST_P(EveryMatcher, NoDisparityReachesOutsideTheRightImage) {
+  const DisparityImage found = match(synthetic_pair(kSize, slanted), GetParam());
+  for (int v = 0; v < kSize.height; ++v)
+    for (int u = 0; u < kSize.width; ++u) EXPECT_LE(found.disparity_px(v, u), u + 0.5);
+}
+
+TEST_P(EveryMatcher, GivesASigmaToEachDisparityAndToNothingElse) {
+  const DisparityImage found = match(synthetic_pair(kSize, slanted), GetParam());
+  EXPECT_EQ(cv::countNonZero((found.disparity_px > 0.0F) != (found.sigma_px > 0.0F)), 0);
+}
+
+TEST_P(EveryMatcher, AConstantImageHasNoDisparities) {
+  RectifiedPair pair;
+  pair.left.pixels = pair.right.pixels = cv::Mat1b(kSize, 128);
+  EXPECT_EQ(cv::countNonZero(match(pair, GetParam()).disparity_px), 0);
+}
+
+TEST_P(EveryMatcher, PixelsThatACameraDidNotRecordHaveNoDisparity) {
+  RectifiedPair pair = synthetic_pair(kSize, slanted);
+  pair.valid_left = cv::Mat1b(kSize, 255);
+  pair.valid_right = cv::Mat1b(kSize, 255);
+  pair.valid_left.colRange(200, 320).setTo(0);
+  pair.valid_right.rowRange(0, 100).setTo(0);
+  const DisparityImage found = match(pair, GetParam());
+  EXPECT_EQ(cv::countNonZero(found.disparity_px.colRange(200, 320)), 0);
+  EXPECT_EQ(cv::countNonZero(found.disparity_px.rowRange(0, 100)), 0);
+  EXPECT_GT(cv::countNonZero(found.disparity_px), 5000);
+}
+
+TEST_P(EveryMatcher, ResultDoesNotDependOnTheNumberOfThreads) {
+  const RectifiedPair pair = synthetic_pair(kSize, slanted);
+  const int before = cv::getNumThreads();
+  cv::setNumThreads(1);
+  const DisparityImage one = match(pair, GetParam());
+  cv::setNumThreads(3);
+  const DisparityImage three = match(pair, GetParam());
+  cv::setNumThreads(before);
+  EXPECT_EQ(cv::countNonZero(one.disparity_px != three.disparity_px), 0);
+}
+
+TEST(SemiGlobalMatching, RefusesPenaltiesInTheWrongOrder) {
+  SemiGlobalMatchingParams params;
+  params.smoothness_large = params.smoothness_small;
+  EXPECT_THROW(match(synthetic_pair(kSize, slanted), params), UsageError);
+}
+
+TEST(BlockMatching, RefusesAWindowThatDoesNotFit) {
+  EXPECT_THROW(match(synthetic_pair({40, 12}, slanted), BlockMatchingParams{}), Error);
+}
+
+TEST(DisparityPicture, IsBlackExactlyWhereThereIsNoDisparity) {
+  DisparityImage image{cv::Mat1f(4, 50, 10.0F), cv::Mat1f(4, 50, 1.0F)};
+  image.disparity_px.colRange(0, 25).setTo(30.0F);
+  image.disparity_px.row(2).setTo(0.0F);
+  cv::Mat1b dark;
+  cv::inRange(draw_disparity(image), cv::Scalar(0, 0, 0), cv::Scalar(0, 0, 0), dark);
+  EXPECT_EQ(cv::countNonZero(dark), 50);
+  EXPECT_EQ(cv::countNonZero(dark.row(2)), 50);
+}
+
+}  // namespace
+}  // namespace stereovox
