@@ -26,8 +26,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string nearest_name(std::string_view word, std::span<const std::string> candidates) {
   std::string best;
-  // Half of the word may be wrong; more is another word.
-  std::size_t best_distance = word.size() / 2 + 1;
+  // Half of the word may be wrong, or two letters swapped; more is another word.
+  std::size_t best_distance = std::max<std::size_t>(word.size() / 2, 2) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);
     if (distance < best_distance) {

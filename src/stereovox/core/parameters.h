@@ -83,7 +83,8 @@ class ParameterList {
     std::visit([&](auto& alternative) { section(name, alternative); }, value);
   }
 
-  std::span<const Parameter> parameters() const { return parameters_; }
+  std::span<const Parameter> parameters() const& { return parameters_; }
+  std::span<const Parameter> parameters() && = delete;  // would refer to what is gone
   void set(const std::string& path, const std::string& text) const;
 
  private:
@@ -119,7 +120,7 @@ std::vector<bool> which_select(const ParameterList& list, const Settings& settin
 // Applies settings by name: first those that select others (`type`, `preset`), whose effect the
 // rest then refines, each group in the given order.
 template <class Params>
-void apply(const Settings& settings, Params& params) {
+void apply_settings(const Settings& settings, Params& params) {
   const std::vector<bool> selects =
       parameters_detail::which_select(parameters_of(params), settings);
   for (const bool selecting : {true, false})

@@ -45,7 +45,7 @@ struct Config {
 std::string complaint_about(const std::string& path, const std::string& text) {
   Config config;
   try {
-    apply({{path, text}}, config);
+    apply_settings({{path, text}}, config);
   } catch (const UsageError& error) {
     return error.what();
   }
@@ -63,7 +63,7 @@ TEST(Parameters, AreListedInOrderWithTheirValues) {
 
 TEST(Parameters, AreSetByNameAndTheChosenTypeComesFirst) {
   Config config;
-  apply({{"reach.distance_m", "12.5"}, {"inner.shape", "cube"}, {"reach.type", "far"}}, config);
+  apply_settings({{"reach.distance_m", "12.5"}, {"inner.shape", "cube"}, {"reach.type", "far"}}, config);
   EXPECT_EQ(std::get<Far>(config.reach).distance_m, 12.5);
   EXPECT_EQ(config.inner.shape, Shape::cube);
 }

@@ -21,7 +21,7 @@ struct SemiGlobalMatchingParams {
   int left_right_tolerance_px = 1;
   int speckle_size_px = 100;
   int speckle_range_px = 2;
-  double sigma_px = 0.35;
+  double sigma_px = 0.25;
 
   void describe(ParameterList& list) {
     list("min_disparity_px", min_disparity_px, {0, 1024}, "smallest disparity that is searched");

@@ -1,0 +1,177 @@
+// stereovox run SOURCE -o OUT: images in, maps out.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+
+#include "command.h"
+#include "run_display.h"
+#include "stereovox/core/timestamp.h"
+#include "stereovox/io/trajectory_file.h"
+#include "stereovox/pipeline/build_maps.h"
+#include "stereovox/pipeline/outputs.h"
+#include "stereovox/pipeline/report.h"
+
+namespace stereovox {
+namespace {
+
+struct RunOptions {
+  SourceOptions source;
+  ConfigOptions config;
+  std::string output, poses, preset;
+  std::optional<double> camera_height_m, camera_pitch_deg;
+  bool overwrite = false, quiet = false, verbose = false, json_progress = false;
+};
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
+
+// The first Ctrl-C asks for a stop after saving; the second one ends the program at once.
+void handle_interrupt(int signal) {
+  interrupted = true;
+  std::signal(signal, SIG_DFL);
+}
+
+Settings shorthands(const RunOptions& options) {
+  Settings settings = options.source.shorthands();
+  if (!options.preset.empty())
+    for (const auto& setting : preset_settings(options.preset)) settings.push_back(setting);
+  const auto set = [&](const char* path, const std::optional<double>& value) {
+    if (!value) return;
+    settings.emplace_back("world.level", "given");
+    settings.emplace_back(path, fmt::format("{}", *value));
+  };
+  set("world.camera_height_m", options.camera_height_m);
+  set("world.camera_pitch_deg", options.camera_pitch_deg);
+  return settings;
+}
+
+std::optional<Trajectory> given_poses(const std::string& poses, const StereoSequence& sequence) {
+  if (poses.empty()) return std::nullopt;
+  if (poses != "truth") return read_tum(poses);
+  if (sequence.truth().empty())
+    throw Error(sequence.info().path.string() + ": has no true poses; --poses takes a file, too");
+  return sequence.truth();
+}
+
+DisplayMode display_mode(const RunOptions& options) {
+  if (options.json_progress) return DisplayMode::json;
+  if (options.quiet) return DisplayMode::quiet;
+  return options.verbose ? DisplayMode::verbose : DisplayMode::automatic;
+}
+
+void print_source(const StereoSequence& sequence) {
+  const SequenceInfo& info = sequence.info();
+  const PinholeCamera& c = sequence.rig().left.pinhole;
+  std::cout << fmt::format("{}: {}, {} pairs of {} x {}, fx {:.2f} px, baseline {:.4f} m, {}\n",
+                           info.path.string(), info.layout, info.pairs, c.width, c.height, c.fx_px,
+                           sequence.rig().baseline_m(),
+                           sequence.rig().is_rectified ? "rectified" : "to be rectified");
+}
+
+void print_stages(const StageTimes& times) {
+  std::cout << fmt::format("{:<12}{:>12}{:>12}{:>12}\n", "stage", "median ms", "p95 ms", "cpu ms");
+  for (const char* stage : {"rectify", "disparity", "odometry", "occupancy", "navmap"}) {
+    const StageSummary s = times.summary(stage);
+    std::cout << fmt::format("{:<12}{:>12.1f}{:>12.1f}{:>12.1f}\n", stage, s.median_ms, s.p95_ms,
+                             s.cpu_ms);
+  }
+}
+
+void print_lost(const BuildResult& result) {
+  for (const LostStretch& lost : result.lost)
+    std::cout << fmt::format("lost: {:.3f} s to {:.3f} s, {} frames: {}\n",
+                             seconds_from_ns(lost.from_ns), seconds_from_ns(lost.to_ns),
+                             lost.frames, lost.reason);
+  if (result.segments.size() > 1)
+    std::cout << fmt::format(
+        "{} segments, which share no common frame; each further one has a folder of its own\n",
+        result.segments.size());
+}
+
+void print_summary(const RunOptions& options, const StereoSequence& sequence,
+                   const PipelineConfig& config, const BuildResult& result) {
+  const MapSegment& main = result.segments.front();
+  const MapCounts counts = count_voxels(main.map, config.navmap.threshold);
+  std::cout << main.world.source << "\n";
+  print_lost(result);
+  std::cout << fmt::format(
+      "{} of {} frames tracked, {} pairs skipped, {:.2f} m, {:.1f} s, {:.1f} fps\n", result.tracked,
+      result.frames, sequence.skipped().size(), path_length_m(main.trajectory), result.wall_s,
+      result.frames / std::max(result.wall_s, 1e-9));
+  std::cout << fmt::format("{} voxels of {} m: {} occupied, {} free, {:.1f} MB\n", counts.observed,
+                           main.map.voxel_size_m(), counts.occupied, counts.free,
+                           static_cast<double>(main.map.memory_bytes()) / 1e6);
+  print_stages(result.times);
+  std::cout << "written to " << options.output
+            << ": map.svx nav.pgm nav.yaml nav.png trajectory.tum trajectory_kitti.txt report.json "
+               "config.yaml\n";
+}
+
+ProgressSink sink_for(RunDisplay& display) {
+  return {[&](const Progress& progress) { display.frame_done(progress); },
+          [&](const std::string& text) { display.warn(text); }, [] { return interrupted.load(); }};
+}
+
+ExitCode exit_code(const PipelineConfig& config, const BuildResult& result) {
+  if (result.was_stopped) return ExitCode::interrupted;
+  if (result.tracked_percent() >= config.min_tracked_percent) return ExitCode::ok;
+  std::cerr << fmt::format(
+      "stereovox: only {:.1f} % of the frames were tracked, less than min_tracked_percent = {}\n",
+      result.tracked_percent(), config.min_tracked_percent);
+  return ExitCode::below_quality_gate;
+}
+
+ExitCode run(const RunOptions& options) {
+  const PipelineConfig config = options.config.load(shorthands(options));
+  const std::unique_ptr<StereoSequence> sequence = options.source.open(config);
+  const std::optional<Trajectory> poses = given_poses(options.poses, *sequence);
+  prepare_output_folder(options.output, options.overwrite);
+  const bool talks = !options.quiet && !options.json_progress;
+  if (talks) print_source(*sequence);
+  for (const std::string& remark : sequence->info().remarks) warn(remark);
+  for (const std::string& oddity : oddities(sequence->rig())) warn(oddity);
+
+  // The stages overlap: one core maps while the others match.
+  cv::setNumThreads(std::max(1, config.thread_count() - 1));
+  std::signal(SIGINT, handle_interrupt);
+  RunDisplay display(display_mode(options));
+  BuildResult result = build_maps(*sequence, config, poses, sink_for(display));
+  display.end();
+  for (const SkippedPair& pair : sequence->skipped())
+    warn(fmt::format("{}: skipped: {}", pair.name, pair.reason));
+  write_outputs(options.output, *sequence, config, result);
+  if (talks) print_summary(options, *sequence, config, result);
+  return exit_code(config, result);
+}
+
+}  // namespace
+
+void add_run(CLI::App& program, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = program.add_subcommand("run", "map a stereo sequence");
+  options->source.add_to(*command);
+  options->config.add_to(*command);
+  command->add_option("-o,--output", options->output, "folder for the results")->required();
+  command->add_option("--poses", options->poses, "'truth' of the data set, or a TUM file")
+      ->type_name("truth|FILE");
+  command
+      ->add_option("--preset", options->preset,
+                   "the paper as printed, as corrected, or tuned (default)")
+      ->check(CLI::IsMember({"literal", "corrected", "tuned"}));
+  command->add_option("--camera-height", options->camera_height_m, "of the camera above the floor")
+      ->type_name("METRES");
+  command->add_option("--camera-pitch", options->camera_pitch_deg, "positive looking down")
+      ->type_name("DEGREES");
+  command->add_flag("--overwrite", options->overwrite, "replace the results of an earlier run");
+  command->add_flag("-q,--quiet", options->quiet, "print warnings and errors only");
+  command->add_flag("-v,--verbose", options->verbose, "print a line for each frame");
+  command->add_flag("--json-progress", options->json_progress,
+                    "print a JSON object for each frame");
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace stereovox

@@ -1,0 +1,93 @@
+// stereovox score trajectory|disparity TRUTH ESTIMATE: how right.
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "stereovox/evaluation/score_report.h"
+#include "stereovox/io/atomic_file.h"
+#include "stereovox/io/disparity_file.h"
+#include "stereovox/io/image_file.h"
+#include "stereovox/io/trajectory_file.h"
+
+namespace stereovox {
+namespace {
+
+struct ScoreOptions {
+  std::string truth, estimate, json;
+};
+
+struct TrajectoryOptions : ScoreOptions {
+  std::vector<std::string> settings;
+  std::vector<double> segment_lengths_m;
+};
+
+struct DisparityOptions : ScoreOptions {
+  std::string mask;
+};
+
+template <class Score>
+ExitCode show(const Score& score, const std::string& json_path) {
+  std::cout << to_text(score);
+  if (!json_path.empty())
+    write_file_atomically(json_path,
+                          [&](std::ostream& out) { out << to_json(score).dump(2) << "\n"; });
+  return ExitCode::ok;
+}
+
+ExitCode score(const TrajectoryOptions& options) {
+  TrajectoryScoreParams params;
+  apply_settings(parse_settings(options.settings), params);
+  params.segment_lengths_m = options.segment_lengths_m;
+  return show(score_trajectory(read_tum(options.truth), read_tum(options.estimate), params),
+              options.json);
+}
+
+ExitCode score(const DisparityOptions& options) {
+  const cv::Mat1b counted = options.mask.empty()
+                                ? cv::Mat1b()
+                                : cv::Mat1b(read_gray_image(options.mask).image.pixels == 255);
+  return show(
+      score_disparity(read_disparity(options.truth), read_disparity(options.estimate), counted),
+      options.json);
+}
+
+template <class Options>
+std::shared_ptr<Options> add_kind(CLI::App& score_command, const char* name, const char* what,
+                                  Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = score_command.add_subcommand(name, what);
+  command->add_option("TRUTH", options->truth)->required();
+  command->add_option("ESTIMATE", options->estimate)->required();
+  command->add_option("--json", options->json, "write the score to this file, too")
+      ->type_name("FILE");
+  command->callback([options, &action] { action = [options] { return score(*options); }; });
+  return options;
+}
+
+}  // namespace
+
+void add_score(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("score", "compare a result with the truth");
+  command->require_subcommand(1);
+  const auto trajectory = add_kind<TrajectoryOptions>(
+      *command, "trajectory", "two TUM files: ATE, RPE (as evo), KITTI t_rel and r_rel", action);
+  command->get_subcommand("trajectory")
+      ->add_option("--set", trajectory->settings, "for example alignment=origin, rpe_delta=5")
+      ->type_name("FIELD=VALUE")
+      ->allow_extra_args(false);
+  command->get_subcommand("trajectory")
+      ->add_option("--lengths", trajectory->segment_lengths_m,
+                   "segments of KITTI's drift, in metres")
+      ->delimiter(',')
+      ->type_name("M,M,...");
+  const auto disparity = add_kind<DisparityOptions>(
+      *command, "disparity", "two PFM or KITTI PNG files: bad-N, D1, MAE, density", action);
+  command->get_subcommand("disparity")
+      ->add_option("--mask", disparity->mask, "image, white where pixels count")
+      ->type_name("FILE");
+}
+
+}  // namespace stereovox

@@ -1,0 +1,67 @@
+#include "command.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "stereovox/dataset/read_ahead.h"
+
+namespace stereovox {
+namespace {
+
+template <class Value>
+void add_if_given(Settings& settings, const char* path, const std::optional<Value>& value) {
+  if (value) settings.emplace_back(path, fmt::format("{}", *value));
+}
+
+}  // namespace
+
+void ConfigOptions::add_to(CLI::App& command) {
+  command.add_option("--config", file, "YAML file of parameters")->type_name("FILE");
+  command.add_option("--set", settings, "one parameter; may be given again")
+      ->type_name("SECTION.FIELD=VALUE")
+      ->allow_extra_args(false);
+}
+
+PipelineConfig ConfigOptions::load(const Settings& shorthands) const {
+  PipelineConfig config;
+  if (!file.empty()) apply_settings(read_settings(file), config);
+  apply_settings(shorthands, config);
+  apply_settings(parse_settings(settings), config);
+  return config;
+}
+
+void SourceOptions::add_to(CLI::App& command) {
+  command.add_option("SOURCE", source, "folder of a data set: plain, KITTI odometry or EuRoC/ASL")
+      ->required();
+  command.add_option("--calib", calibration, "calibration to use instead of the data set's")
+      ->type_name("FILE");
+  command.add_option("--start", start_s, "skip this much")->type_name("SECONDS");
+  command.add_option("--duration", duration_s, "use only this much")->type_name("SECONDS");
+  command.add_option("--max-frames", max_frames, "use at most this many frames")->type_name("N");
+  command.add_option("--frame-skip", frame_skip, "after each frame leave out N")->type_name("N");
+  command.add_option("--threads", threads, "0 = one for each core")->type_name("N");
+}
+
+Settings SourceOptions::shorthands() const {
+  Settings settings;
+  add_if_given(settings, "dataset.start_s", start_s);
+  add_if_given(settings, "dataset.duration_s", duration_s);
+  add_if_given(settings, "dataset.max_frames", max_frames);
+  add_if_given(settings, "dataset.frame_skip", frame_skip);
+  add_if_given(settings, "threads", threads);
+  return settings;
+}
+
+std::unique_ptr<StereoSequence> SourceOptions::open(const PipelineConfig& config) const {
+  constexpr int kFramesAhead = 4;
+  std::optional<std::filesystem::path> override_path;
+  if (!calibration.empty()) override_path = calibration;
+  auto sequence = open_sequence(source, config.dataset, override_path);
+  return config.thread_count() > 1 ? read_ahead(std::move(sequence), kFramesAhead)
+                                   : std::move(sequence);
+}
+
+void warn(const std::string& text) { std::cerr << "stereovox: warning: " << text << "\n"; }
+
+}  // namespace stereovox

@@ -1,0 +1,168 @@
+#include "stereovox/navmap/sight_lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "stereovox/core/error.h"
+#include "stereovox/navmap/cell_line.h"
+
+namespace stereovox {
+namespace {
+
+constexpr std::string_view kMagic = "sight lines 1\n";
+
+using Cells = std::vector<Eigen::Vector2i>;
+
+// One bit for each occupied column of a tile.
+std::uint64_t occupied_bits(const ColumnTile& columns, std::uint64_t held,
+                            const NavmapParams& params) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (is_occupied(columns[i], (held >> i & 1U) != 0, params)) bits |= std::uint64_t{1} << i;
+  return bits;
+}
+
+std::uint64_t bits_of(const CellSet& set, const TileIndex& tile) {
+  const auto found = set.tiles().find(tile);
+  return found == set.tiles().end() ? 0 : found->second;
+}
+
+// The tiles that the lines of one frame meet: states are looked up once a tile, at first use.
+class FrameTiles {
+ public:
+  FrameTiles(const VoxelMap& map, const NavmapParams& params, const CellSet& held)
+      : reader_(map, params), params_(params), held_(held) {}
+
+  bool is_occupied(const Eigen::Vector2i& cell) { return (tile(cell).occupied & bit(cell)) != 0; }
+  void mark(const Eigen::Vector2i& cell) { tile(cell).marked |= bit(cell); }
+  void merge_marks_into(CellSet& set) const {
+    for (const auto& [index, tile] : tiles_) set.insert(index, tile.marked);
+  }
+
+ private:
+  struct Tile {
+    std::uint64_t occupied = 0, marked = 0;
+  };
+
+  static std::uint64_t bit(const Eigen::Vector2i& cell) {
+    return std::uint64_t{1} << position_in_tile(cell);
+  }
+  Tile& tile(const Eigen::Vector2i& cell);
+
+  ColumnReader reader_;
+  const NavmapParams& params_;
+  const CellSet& held_;
+  std::map<TileIndex, Tile> tiles_;
+  std::pair<const TileIndex, Tile>* last_ = nullptr;  // successive cells mostly share a tile
+};
+
+FrameTiles::Tile& FrameTiles::tile(const Eigen::Vector2i& cell) {
+  const TileIndex index = tile_of(cell);
+  if (last_ != nullptr && last_->first == index) return last_->second;
+  const auto [found, is_new] = tiles_.try_emplace(index);
+  if (is_new)
+    found->second.occupied = occupied_bits(reader_.read(index), bits_of(held_, index), params_);
+  last_ = &*found;
+  return last_->second;
+}
+
+void sort_unique(Cells& cells) {
+  const auto order = [](const Eigen::Vector2i& a, const Eigen::Vector2i& b) {
+    return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+  };
+  std::ranges::sort(cells, order);
+  const auto repeated = std::ranges::unique(cells);
+  cells.erase(repeated.begin(), repeated.end());
+}
+
+// The distinct cells below the voxels in the layers.
+Cells cells_below(std::span<const Eigen::Vector3i> voxels, const Layers& layers) {
+  Cells cells;
+  for (const Eigen::Vector3i& voxel : voxels)
+    if (layers.contains(voxel.z()) && (cells.empty() || cells.back() != voxel.head<2>()))
+      cells.emplace_back(voxel.head<2>());
+  sort_unique(cells);
+  return cells;
+}
+
+Cells occupied_cells(const VoxelMap& map, const CellSet& held, const NavmapParams& params) {
+  Cells cells;
+  for_each_column_tile(map, params, [&](const TileIndex& index, const ColumnTile& columns) {
+    const std::uint64_t bits = occupied_bits(columns, bits_of(held, index), params);
+    for (int i = 0; i < kCellsPerTile; ++i)
+      if (bits >> i & 1U) cells.push_back(cell_at(index, i));
+  });
+  return cells;
+}
+
+// Marks the cells on the way from the robot to each occupied target.
+void mark_lines(const Eigen::Vector2i& robot, const Cells& targets, bool stops_at_occupied,
+                FrameTiles& tiles) {
+  for (const Eigen::Vector2i& target : targets) {
+    if (!tiles.is_occupied(target)) continue;
+    for (CellLine line(robot, target); line.cell() != target; line.step()) {
+      const bool is_free = !tiles.is_occupied(line.cell());
+      if (is_free) tiles.mark(line.cell());
+      // The robot itself stands in free space, whatever its cell says.
+      if (!is_free && stops_at_occupied && line.cell() != robot) break;
+    }
+  }
+}
+
+// Drops what fell below the hysteresis, adds what the hits raised above the threshold: a state
+// rises by hits only.
+void update_held(const VoxelMap& map, const Cells& hit_cells, const NavmapParams& params,
+                 CellSet& held) {
+  const ColumnReader reader(map, params);
+  CellSet candidates = held;
+  for (const Eigen::Vector2i& cell : hit_cells)
+    candidates.insert(tile_of(cell), std::uint64_t{1} << position_in_tile(cell));
+  for (const auto& [tile, bits] : candidates.tiles()) {
+    const std::uint64_t occupied = occupied_bits(reader.read(tile), bits_of(held, tile), params);
+    held.erase(tile, ~occupied);
+    held.insert(tile, occupied & bits);
+  }
+}
+
+}  // namespace
+
+bool is_occupied(const ColumnState& column, bool is_held, const NavmapParams& params) {
+  if (!column.is_known) return false;
+  if (column.max_state > params.threshold) return true;
+  return is_held && column.max_state >= params.threshold - params.hysteresis;
+}
+
+void SightLines::observe(const VoxelMap& map, const Eigen::Vector2d& robot_xy_world,
+                         std::span<const Eigen::Vector3i> hits, const NavmapParams& params) {
+  const Cells hit_cells = cells_below(hits, layers_of(map, params));
+  if (params.hysteresis > 0.0) update_held(map, hit_cells, params, held_);
+
+  const bool is_printed = params.label_rule == LabelRule::as_printed;
+  const Cells targets = is_printed ? occupied_cells(map, held_, params) : hit_cells;
+  const Eigen::Vector2i robot = (robot_xy_world / map.voxel_size_m()).array().floor().cast<int>();
+  FrameTiles tiles(map, params, held_);
+  mark_lines(robot, targets, !is_printed, tiles);
+  tiles.merge_marks_into(free_);
+}
+
+std::string to_bytes(const SightLines& sight_lines) {
+  std::string bytes(kMagic);
+  append_bytes(sight_lines.free_cells(), bytes);
+  append_bytes(sight_lines.held_cells(), bytes);
+  return bytes;
+}
+
+SightLines sight_lines_from_bytes(std::string_view bytes, const std::string& source) {
+  if (!bytes.starts_with(kMagic))
+    throw Error(fmt::format("{}: the sight lines do not begin with 'sight lines 1'", source));
+  bytes.remove_prefix(kMagic.size());
+  SightLines sight_lines;
+  sight_lines.free_ = take_cell_set(bytes, source);
+  sight_lines.held_ = take_cell_set(bytes, source);
+  if (!bytes.empty())
+    throw Error(fmt::format("{}: {} bytes too many after the sight lines", source, bytes.size()));
+  return sight_lines;
+}
+
+}  // namespace stereovox

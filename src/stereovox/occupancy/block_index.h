@@ -1,0 +1,68 @@
+// The lattice cut into blocks of 8 x 8 x 8 voxels, and a hash from a block's place to its number.
+// Voxel (x, y, z) lies in block (x >> 3, y >> 3, z >> 3), at position x + 8 y + 64 z inside it,
+// each taken modulo 8.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+namespace stereovox {
+
+inline constexpr int kBlockSideLog2 = 3;
+inline constexpr int kBlockSide = 1 << kBlockSideLog2;
+inline constexpr int kVoxelsPerBlock = kBlockSide * kBlockSide * kBlockSide;
+// Block coordinates have 21 bits in the hash's key. At 5 cm this reaches 419 km from the origin.
+inline constexpr int kMaxBlockCoordinate = (1 << 20) - 1;
+
+inline Eigen::Vector3i block_of(const Eigen::Vector3i& voxel) {
+  return {voxel.x() >> kBlockSideLog2, voxel.y() >> kBlockSideLog2, voxel.z() >> kBlockSideLog2};
+}
+
+inline int position_in_block(const Eigen::Vector3i& voxel) {
+  constexpr int kInside = kBlockSide - 1;
+  return (voxel.x() & kInside) | (voxel.y() & kInside) << kBlockSideLog2 |
+         (voxel.z() & kInside) << 2 * kBlockSideLog2;
+}
+
+inline Eigen::Vector3i voxel_at(const Eigen::Vector3i& block, int position) {
+  constexpr int kInside = kBlockSide - 1;
+  return block * kBlockSide + Eigen::Vector3i(position & kInside,
+                                              position >> kBlockSideLog2 & kInside,
+                                              position >> 2 * kBlockSideLog2);
+}
+
+// The canonical order of voxels and of blocks: by x, then y, then z.
+struct LatticeOrder {
+  bool operator()(const Eigen::Vector3i& a, const Eigen::Vector3i& b) const {
+    return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
+  }
+};
+
+// Numbers blocks 0, 1, 2, ... in the order in which they are first seen. Open addressing, at most
+// half full. Coordinates must lie within +-kMaxBlockCoordinate.
+class BlockIndex {
+ public:
+  static constexpr int kNone = -1;
+
+  int find(const Eigen::Vector3i& block) const;
+  int find_or_insert(const Eigen::Vector3i& block);
+  int size() const { return size_; }
+  std::size_t memory_bytes() const { return slots_.capacity() * sizeof(Slot); }
+
+ private:
+  struct Slot {
+    std::uint64_t key = 0;
+    int number = kNone;
+  };
+
+  std::size_t slot_of(std::uint64_t key) const;
+  void grow();
+
+  std::vector<Slot> slots_;
+  int size_ = 0;
+};
+
+}  // namespace stereovox

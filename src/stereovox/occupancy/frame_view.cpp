@@ -1,0 +1,155 @@
+#include "stereovox/occupancy/frame_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "stereovox/core/error.h"
+
+namespace stereovox {
+namespace {
+
+constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+
+void check_caller(const DisparityImage& disparity, const RectifiedCamera& camera,
+                  const SE3& T_world_camera) {
+  if (disparity.width() != camera.pinhole.width || disparity.height() != camera.pinhole.height ||
+      disparity.sigma_px.size() != disparity.disparity_px.size())
+    throw std::logic_error("integrate: the disparity image has another size than the camera");
+  if (!is_finite(T_world_camera)) throw std::logic_error("integrate: the pose is not finite");
+}
+
+// Farthest distance from the camera at which a frame can touch a voxel.
+double reach_m(const OccupancyParams& params) {
+  constexpr double kCornerByAxis = 4.0;  // rays into image corners are longer than their depth
+  return kCornerByAxis * std::max(params.max_depth_m, params.max_clearing_m);
+}
+
+void check_reach(const SE3& T_world_camera, const OccupancyParams& params, double voxel_size_m) {
+  const double limit_m = voxel_size_m * kBlockSide * (kMaxBlockCoordinate - kBlockSide);
+  const Eigen::Vector3d& p = T_world_camera.translation;
+  if (p.cwiseAbs().maxCoeff() + reach_m(params) > limit_m)
+    throw Error(
+        fmt::format("camera at ({:.0f}, {:.0f}, {:.0f}) m is beyond the map's limit of "
+                    "{:.0f} m from the origin",
+                    p.x(), p.y(), p.z(), limit_m));
+}
+
+std::uint32_t stamp_in_map_ms(std::int64_t stamp_ns, VoxelMap& map) {
+  if (!map.epoch_ns) map.epoch_ns = stamp_ns;
+  const std::int64_t stamp_ms = (stamp_ns - *map.epoch_ns) / kNanosecondsPerMillisecond;
+  if (stamp_ns < *map.epoch_ns || stamp_ms > std::numeric_limits<std::uint32_t>::max())
+    throw Error(
+        fmt::format("frame at {} ns does not lie within 49 days after the map's first frame "
+                    "at {} ns",
+                    stamp_ns, *map.epoch_ns));
+  return static_cast<std::uint32_t>(stamp_ms);
+}
+
+bool is_measured(float disparity_px, float sigma_px) {
+  return disparity_px > 0.0F && std::isfinite(disparity_px) && sigma_px >= 0.0F &&
+         std::isfinite(sigma_px);
+}
+
+}  // namespace
+
+FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& camera,
+                     const SE3& T_world_camera, std::int64_t stamp_ns,
+                     const OccupancyParams& params, VoxelMap& map) {
+  check_caller(disparity, camera, T_world_camera);
+  if (params.voxel_size_m != map.voxel_size_m())
+    throw Error(fmt::format("voxel size of the map is {} m, of the configuration {} m",
+                            map.voxel_size_m(), params.voxel_size_m));
+  check_reach(T_world_camera, params, map.voxel_size_m());
+  return {.disparity = disparity,
+          .camera = camera,
+          .params = params,
+          .T_world_camera = T_world_camera,
+          .T_camera_world = inverse(T_world_camera),
+          .stamp_ms = stamp_in_map_ms(stamp_ns, map),
+          .min_z_m = map.floor_z_m() + params.min_height_m,
+          .max_z_m = map.floor_z_m() + params.max_height_m};
+}
+
+std::optional<PointMeasurement> measure_pixel(const FrameView& frame, int u, int v) {
+  const float disparity_px = frame.disparity.disparity_px(v, u);
+  const float sigma_px = frame.disparity.sigma_px(v, u);
+  if (!is_measured(disparity_px, sigma_px)) return std::nullopt;
+  if (frame.camera.depth_m(disparity_px) < frame.params.min_depth_m) return std::nullopt;
+  const PointMeasurement point = measure_point(
+      frame.params.error_model, frame.camera, frame.T_world_camera, {u, v}, disparity_px, sigma_px);
+  if (point.p_world.z() < frame.min_z_m) return std::nullopt;
+  return point;
+}
+
+bool marks_surface(const FrameView& frame, const PointMeasurement& point) {
+  const OccupancyParams& params = frame.params;
+  const double max_sigma_m = params.max_sigma_half_voxels * 0.5 * params.voxel_size_m;
+  return point.depth_m <= params.max_depth_m && point.sigma_range_m <= max_sigma_m &&
+         point.p_world.z() <= frame.max_z_m;
+}
+
+std::optional<Segment> free_segment(const FrameView& frame, const PointMeasurement& point) {
+  const OccupancyParams& params = frame.params;
+  const double margin_m =
+      std::max(0.5 * params.voxel_size_m, params.free_margin_sigmas * point.sigma_range_m);
+  double begin_m = 0.0, end_m = std::min(point.range_m - margin_m, params.max_clearing_m);
+  const double camera_z_m = frame.T_world_camera.translation.z();
+  const double rise = point.ray_world.z();
+  if (rise != 0.0) {
+    const auto [in_m, out_m] =
+        std::minmax({(frame.min_z_m - camera_z_m) / rise, (frame.max_z_m - camera_z_m) / rise});
+    begin_m = std::max(begin_m, in_m);
+    end_m = std::min(end_m, out_m);
+  } else if (camera_z_m < frame.min_z_m || camera_z_m > frame.max_z_m) {
+    return std::nullopt;
+  }
+  if (!(begin_m < end_m)) return std::nullopt;
+  return Segment{frame.T_world_camera.translation + begin_m * point.ray_world,
+                 frame.T_world_camera.translation + end_m * point.ray_world};
+}
+
+double expected_points(const FrameView& frame, const Eigen::Vector3i& voxel) {
+  const OccupancyParams& params = frame.params;
+  const Eigen::Vector3d center = voxel_center_of(params.voxel_size_m, voxel);
+  const double z_m = std::max((frame.T_camera_world * center).z(), params.min_depth_m);
+  const double steps_m = z_m * params.pixel_step;
+  const double area = params.voxel_size_m * params.voxel_size_m;
+  return params.valid_fraction * area * frame.camera.pinhole.fx_px * frame.camera.pinhole.fy_px /
+         (steps_m * steps_m);
+}
+
+bool is_in_frustum(const FrameView& frame, const Eigen::Vector3i& voxel) {
+  constexpr double kHalfPixel = 0.5;
+  const Eigen::Vector3d center = voxel_center_of(frame.params.voxel_size_m, voxel);
+  if (center.z() < frame.min_z_m || center.z() > frame.max_z_m) return false;
+  const Eigen::Vector3d p_camera = frame.T_camera_world * center;
+  if (p_camera.z() < frame.params.min_depth_m || p_camera.z() > frame.params.max_depth_m)
+    return false;
+  const Eigen::Vector2d pixel = project(frame.camera.pinhole, p_camera);
+  return pixel.x() >= -kHalfPixel && pixel.y() >= -kHalfPixel &&
+         pixel.x() < frame.camera.pinhole.width - kHalfPixel &&
+         pixel.y() < frame.camera.pinhole.height - kHalfPixel;
+}
+
+VoxelBounds frustum_bounds(const FrameView& frame) {
+  const PinholeCamera& c = frame.camera.pinhole;
+  Eigen::Vector3d low = frame.T_world_camera.translation, high = low;
+  for (const double u : {-1.0, double(c.width)})
+    for (const double v : {-1.0, double(c.height)}) {
+      const Eigen::Vector3d ray((u - c.cx_px) / c.fx_px, (v - c.cy_px) / c.fy_px, 1.0);
+      const Eigen::Vector3d corner = frame.T_world_camera * (frame.params.max_depth_m * ray);
+      low = low.cwiseMin(corner);
+      high = high.cwiseMax(corner);
+    }
+  low.z() = std::max(low.z(), frame.min_z_m);
+  high.z() = std::min(high.z(), frame.max_z_m);
+  return {voxel_index_of(frame.params.voxel_size_m, low),
+          voxel_index_of(frame.params.voxel_size_m, high)};
+}
+
+}  // namespace stereovox

@@ -1,0 +1,62 @@
+// One frame as seen by the map: which pixel says what, which space a ray may clear, which voxels
+// are in view. The fast and the plain integration share these definitions and nothing else.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "stereovox/core/camera.h"
+#include "stereovox/core/image.h"
+#include "stereovox/core/se3.h"
+#include "stereovox/occupancy/occupancy_params.h"
+#include "stereovox/occupancy/voxel_map.h"
+
+namespace stereovox {
+
+// Refers to what it was made from.
+struct FrameView {
+  const DisparityImage& disparity;
+  const RectifiedCamera& camera;
+  const OccupancyParams& params;
+  SE3 T_world_camera, T_camera_world;
+  std::uint32_t stamp_ms = 0;       // since the map's epoch
+  double min_z_m = 0, max_z_m = 0;  // height limits in the world
+};
+
+struct Segment {
+  Eigen::Vector3d from, to;
+};
+
+// Checks that the frame fits the map and sets the map's epoch if it is the first one. Throws Error
+// when the voxel sizes differ, the time stamp is before the epoch or more than 49 days after it, or
+// the view leaves the lattice; std::logic_error when image and camera differ in size or the pose is
+// not finite.
+FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& camera,
+                     const SE3& T_world_camera, std::int64_t stamp_ns,
+                     const OccupancyParams& params, VoxelMap& map);
+
+// First pixel, in each direction, of those taken at every `step`-th.
+inline int first_sample(int step) { return step / 2; }
+
+// What pixel (u, v) measures; nothing when it has no disparity or a nonsensical one, or the point
+// is nearer than min_depth_m or below the lowest height.
+std::optional<PointMeasurement> measure_pixel(const FrameView& frame, int u, int v);
+
+// Whether the point is certain, near and low enough to mark a surface; if not, it only clears.
+bool marks_surface(const FrameView& frame, const PointMeasurement& point);
+
+// The part of the ray to the point that is known to be free: up to max(r, k_f sigma) before the
+// point, not farther than max_clearing_m, within the height limits.
+std::optional<Segment> free_segment(const FrameView& frame, const PointMeasurement& point);
+
+// N_exp of eq. (13): how many measured pixels a face of this voxel would send, seen frontally.
+double expected_points(const FrameView& frame, const Eigen::Vector3i& voxel);
+
+// Whether the voxel's centre is within image, depth limits and height limits.
+bool is_in_frustum(const FrameView& frame, const Eigen::Vector3i& voxel);
+
+// Voxels outside these bounds are not in the frustum; min > max when it is empty.
+VoxelBounds frustum_bounds(const FrameView& frame);
+
+}  // namespace stereovox

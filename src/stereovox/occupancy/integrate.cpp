@@ -1,0 +1,168 @@
+#include "stereovox/occupancy/integrate.h"
+
+#include <algorithm>
+#include <array>
+
+#include "stereovox/core/parallel.h"
+#include "stereovox/occupancy/frame_observation.h"
+#include "stereovox/occupancy/voxel_update.h"
+
+namespace stereovox {
+namespace {
+
+// A block's observations with a border of one voxel on every side.
+constexpr int kPaddedSide = kBlockSide + 2;
+
+constexpr int padded_position(int x, int y, int z) {
+  return (x + 1) + kPaddedSide * ((y + 1) + kPaddedSide * (z + 1));
+}
+
+int padded_position_of(int position) {
+  const Eigen::Vector3i local = voxel_at(Eigen::Vector3i::Zero(), position);
+  return padded_position(local.x(), local.y(), local.z());
+}
+
+class PaddedObservations {
+ public:
+  PaddedObservations(const FrameObservation& frame, const BlockObservation& center) {
+    Eigen::Vector3i step;
+    for (step.z() = -1; step.z() <= 1; ++step.z())
+      for (step.y() = -1; step.y() <= 1; ++step.y())
+        for (step.x() = -1; step.x() <= 1; ++step.x()) take_from(frame, center, step);
+  }
+
+  // When nothing near is hit, every observation near is 0 and so is H.
+  bool is_uniform() const { return !has_hits_; }
+
+  double heterogeneity_at(int position, const HomogeneityParams& params,
+                          std::span<const int> neighbours) const {
+    const int center = padded_position_of(position);
+    std::array<float, 26> values{};
+    for (std::size_t i = 0; i < neighbours.size(); ++i)
+      values[i] = values_[static_cast<std::size_t>(center + neighbours[i])];
+    return heterogeneity(params, values_[static_cast<std::size_t>(center)],
+                         std::span(values).first(neighbours.size()));
+  }
+
+ private:
+  void take_from(const FrameObservation& frame, const BlockObservation& center,
+                 const Eigen::Vector3i& step) {
+    const int number = frame.index.find(center.index + step);
+    if (number == BlockIndex::kNone) return;
+    const BlockObservation& block = frame.blocks[static_cast<std::size_t>(number)];
+    has_hits_ = has_hits_ || !block.values.empty();
+    copy_overlap(block, step);
+  }
+
+  void copy_overlap(const BlockObservation& block, const Eigen::Vector3i& step) {
+    const auto low = [](int s) { return s < 0 ? kBlockSide - 1 : 0; };
+    const auto high = [](int s) { return s > 0 ? 0 : kBlockSide - 1; };
+    for (int z = low(step.z()); z <= high(step.z()); ++z)
+      for (int y = low(step.y()); y <= high(step.y()); ++y)
+        for (int x = low(step.x()); x <= high(step.x()); ++x)
+          values_[static_cast<std::size_t>(padded_position(
+              x + kBlockSide * step.x(), y + kBlockSide * step.y(), z + kBlockSide * step.z()))] =
+              block.value_at(position_in_block({x, y, z}));
+  }
+
+  static constexpr std::array<float, kPaddedSide * kPaddedSide * kPaddedSide> all_unobserved() {
+    std::array<float, kPaddedSide * kPaddedSide * kPaddedSide> values{};
+    values.fill(kUnobserved);
+    return values;
+  }
+
+  std::array<float, kPaddedSide* kPaddedSide* kPaddedSide> values_ = all_unobserved();
+  bool has_hits_ = false;
+};
+
+std::vector<int> padded_steps(Neighbourhood neighbourhood) {
+  std::vector<int> steps;
+  for (const Eigen::Vector3i& step : neighbour_steps(neighbourhood))
+    steps.push_back(step.x() + kPaddedSide * (step.y() + kPaddedSide * step.z()));
+  return steps;
+}
+
+// A rule's age factor, which most voxels of a block share.
+template <class Rule>
+class AgeFactor {
+ public:
+  explicit AgeFactor(const Rule& rule) : rule_(rule), factor_(rule.age_factor(0.0)) {}
+
+  double of(const Voxel& voxel, std::uint32_t stamp_ms) {
+    if (!is_known(voxel)) return 1.0;
+    const double age = age_s(voxel, stamp_ms);
+    if (age != age_s_) factor_ = rule_.age_factor(age);
+    age_s_ = age;
+    return factor_;
+  }
+
+ private:
+  const Rule& rule_;
+  double age_s_ = 0.0;
+  double factor_;
+};
+
+// Step 5 for one block, in two passes over the frame: all O_t were there before any H is asked for.
+template <class Rule>
+void update_block(const Rule& rule, const FrameView& frame, const FrameObservation& observation,
+                  std::span<const int> neighbours, std::uint32_t frames_before,
+                  const BlockObservation& seen, VoxelBlock& block) {
+  const OccupancyParams& params = frame.params;
+  const PaddedObservations padded(observation, seen);
+  AgeFactor<Rule> age_factor(rule);
+  for_each_in(seen.observed, [&](int i) {
+    Voxel& voxel = block.voxels[static_cast<std::size_t>(i)];
+    const double H =
+        padded.is_uniform() ? 0.0 : padded.heterogeneity_at(i, params.homogeneity, neighbours);
+    const double k = rule.credibility({.prior_observations = voxel.observations,
+                                       .homogeneity = homogeneity(params.homogeneity, H),
+                                       .age_factor = age_factor.of(voxel, frame.stamp_ms),
+                                       .frames_before = frames_before});
+    update_voxel(seen.value_at(i), k, params.initial_state, frame.stamp_ms, voxel);
+  });
+}
+
+std::vector<VoxelBlock*> blocks_of(const FrameObservation& observation, VoxelMap& map) {
+  std::vector<VoxelBlock*> blocks;
+  for (const BlockObservation& seen : observation.blocks)
+    blocks.push_back(seen.observed.is_empty() ? nullptr : &map.find_or_create_block(seen.index));
+  return blocks;
+}
+
+FrameUpdate summary_of(const FrameObservation& observation) {
+  FrameUpdate update;
+  update.points_used = observation.points_used;
+  int observed = 0;
+  for (const BlockObservation& block : observation.blocks) {
+    for (const std::uint64_t word : block.observed.words) observed += std::popcount(word);
+    for_each_in(block.hit, [&](int i) { update.hits.push_back(voxel_at(block.index, i)); });
+  }
+  std::ranges::sort(update.hits, LatticeOrder{});
+  update.hit_voxels = static_cast<int>(update.hits.size());
+  update.free_voxels = observed - update.hit_voxels;
+  return update;
+}
+
+}  // namespace
+
+FrameUpdate integrate(const DisparityImage& disparity, const RectifiedCamera& camera,
+                      const SE3& T_world_camera, std::int64_t stamp_ns,
+                      const OccupancyParams& params, int threads, VoxelMap& map) {
+  const FrameView frame = view_frame(disparity, camera, T_world_camera, stamp_ns, params, map);
+  const FrameObservation observation = observe_frame(frame, map, threads);
+  const std::vector<VoxelBlock*> blocks = blocks_of(observation, map);
+  const std::vector<int> neighbours = padded_steps(params.homogeneity.neighbours);
+  const auto update_all = [&](const auto& rule) {
+    parallel_for(0, static_cast<int>(blocks.size()), threads, [&](int i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (blocks[at] != nullptr)
+        update_block(rule, frame, observation, neighbours, map.frames_integrated,
+                     observation.blocks[at], *blocks[at]);
+    });
+  };
+  std::visit(update_all, params.update);
+  ++map.frames_integrated;
+  return summary_of(observation);
+}
+
+}  // namespace stereovox

@@ -1,0 +1,104 @@
+// What the points of one frame say about one voxel together (eq. 13): the union of their evidence
+// plus a bonus for density. Counts only, so the order of the points does not matter.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <variant>
+
+#include "stereovox/core/parameters.h"
+
+namespace stereovox {
+
+struct VoxelEvidence {
+  static constexpr int kLevels = 32;  // evidence is counted to the nearest of 0, 1/31, ..., 1
+
+  float largest = 0.0F;
+  std::uint32_t points_inside = 0;
+  std::array<std::uint32_t, kLevels> count_of_level{};
+
+  void add(float evidence, bool is_inside) {
+    largest = std::max(largest, evidence);
+    points_inside += is_inside ? 1 : 0;
+    ++count_of_level[static_cast<std::size_t>(std::lround(evidence * (kLevels - 1)))];
+  }
+};
+
+// The printed union: one point decides.
+struct MaxUnion {
+  static constexpr const char* kName = "max";
+  void describe(ParameterList&) {}
+  double strength(const VoxelEvidence& evidence, double) const {
+    return static_cast<double>(evidence.largest);
+  }
+};
+
+// The K-th largest evidence, where K is a share of the points that a full face would send: a few
+// mismatches cannot lift a voxel.
+struct RankUnion {
+  static constexpr const char* kName = "rank";
+
+  double quantile = 0.05;
+
+  void describe(ParameterList& list) {
+    list("quantile", quantile, {0, 1},
+         "share of the pixels of a voxel's face that must agree; 0 = one point is enough");
+  }
+
+  double strength(const VoxelEvidence& evidence, double expected_points) const {
+    const double rank = std::max(1.0, std::ceil(quantile * expected_points));
+    double seen = 0.0;
+    for (int level = VoxelEvidence::kLevels - 1; level > 0; --level) {
+      seen += evidence.count_of_level[static_cast<std::size_t>(level)];
+      if (seen >= rank) return static_cast<double>(level) / (VoxelEvidence::kLevels - 1);
+    }
+    return 0.0;
+  }
+};
+
+using UnionRule = std::variant<MaxUnion, RankUnion>;
+
+// lambda npts / (6 r^3) as printed. Given as a share of the voxel's volume, lambda is good for
+// every voxel size.
+struct PrintedDensity {
+  static constexpr const char* kName = "printed";
+
+  double lambda_voxels = 0.0075;
+
+  void describe(ParameterList& list) {
+    list("lambda_voxels", lambda_voxels, {0, 1},
+         "lambda of eq. (13) in voxel volumes; 0.0075 adds 0.01 per point");
+  }
+  double bonus(const VoxelEvidence& evidence, double) const {
+    constexpr double kVolumeByPrinted = 8.0 / 6.0;  // 8 r^3 / 6 r^3
+    return lambda_voxels * kVolumeByPrinted * evidence.points_inside;
+  }
+};
+
+// lambda times the share of the points that a full face would send.
+struct RelativeDensity {
+  static constexpr const char* kName = "relative";
+
+  double lambda = 0.1;
+
+  void describe(ParameterList& list) {
+    list("lambda", lambda, {0, 1}, "evidence added to a voxel whose face is fully covered");
+  }
+  double bonus(const VoxelEvidence& evidence, double expected_points) const {
+    return lambda * std::min(1.0, evidence.points_inside / expected_points);
+  }
+};
+
+using DensityBonus = std::variant<PrintedDensity, RelativeDensity>;
+
+// O_t of eq. (13).
+template <class Union, class Density>
+float observation_of(const VoxelEvidence& evidence, double expected_points, const Union& union_rule,
+                     const Density& density) {
+  return static_cast<float>(std::min(1.0, union_rule.strength(evidence, expected_points) +
+                                              density.bonus(evidence, expected_points)));
+}
+
+}  // namespace stereovox

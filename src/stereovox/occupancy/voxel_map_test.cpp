@@ -1,0 +1,93 @@
+#include "stereovox/occupancy/voxel_map.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "stereovox/core/error.h"
+
+namespace stereovox {
+namespace {
+
+void set(VoxelMap& map, const Eigen::Vector3i& voxel, float state) {
+  map.find_or_create_block(block_of(voxel)).voxels[std::size_t(position_in_block(voxel))] = {state,
+                                                                                             0, 1};
+}
+
+TEST(BlockIndex, VoxelsAndTheirPlaceInABlockAreInverse) {
+  for (const Eigen::Vector3i& voxel : {Eigen::Vector3i(0, 0, 0), Eigen::Vector3i(-1, 7, 8),
+                                       Eigen::Vector3i(-17, 100, -8), Eigen::Vector3i(5, -3, 2)})
+    EXPECT_EQ(voxel_at(block_of(voxel), position_in_block(voxel)), voxel);
+  EXPECT_EQ(block_of({-1, -8, -9}), Eigen::Vector3i(-1, -1, -2));
+}
+
+TEST(BlockIndex, FindsWhatWasInsertedAndNothingElse) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> coordinate(-kMaxBlockCoordinate, kMaxBlockCoordinate);
+  BlockIndex index;
+  std::vector<Eigen::Vector3i> blocks;
+  for (int i = 0; i < 3000; ++i) {
+    blocks.emplace_back(coordinate(random), coordinate(random), coordinate(random));
+    EXPECT_EQ(index.find_or_insert(blocks.back()), i);
+  }
+  for (int i = 0; i < 3000; ++i) EXPECT_EQ(index.find(blocks[std::size_t(i)]), i);
+  EXPECT_EQ(index.find({1, 2, 3}), BlockIndex::kNone);
+  EXPECT_EQ(BlockIndex{}.find({1, 2, 3}), BlockIndex::kNone);
+}
+
+TEST(VoxelMap, KnowsNothingAtFirst) {
+  const VoxelMap map(0.05);
+  EXPECT_EQ(map.find({0, 0, 0}), nullptr);
+  EXPECT_FALSE(is_known(map.at({0, 0, 0})));
+  EXPECT_FALSE(map.bounds().has_value());
+  EXPECT_EQ(map.known_voxel_count(), 0U);
+}
+
+TEST(VoxelMap, UnknownVoxelsOfAnExistingBlockStayUnknown) {
+  VoxelMap map(0.05);
+  set(map, {1, 2, 3}, 0.75F);
+  EXPECT_EQ(map.at({1, 2, 3}).state, 0.75F);
+  ASSERT_NE(map.find({1, 2, 4}), nullptr);
+  EXPECT_FALSE(is_known(*map.find({1, 2, 4})));
+  EXPECT_EQ(map.known_voxel_count(), 1U);
+}
+
+TEST(VoxelMap, BoundsHoldTheKnownVoxelsOnly) {
+  VoxelMap map(0.05);
+  set(map, {-3, 20, 5}, 0.0F);
+  set(map, {4, 2, 9}, 1.0F);
+  EXPECT_EQ(map.bounds()->min, Eigen::Vector3i(-3, 2, 5));
+  EXPECT_EQ(map.bounds()->max, Eigen::Vector3i(4, 20, 9));
+}
+
+TEST(VoxelMap, BlocksComeInCanonicalOrderWhateverTheOrderOfCreation) {
+  VoxelMap map(0.05);
+  for (const Eigen::Vector3i& block : {Eigen::Vector3i(1, 0, 0), Eigen::Vector3i(-1, 5, 0),
+                                       Eigen::Vector3i(-1, -5, 9), Eigen::Vector3i(0, 0, 0)})
+    map.find_or_create_block(block);
+  std::vector<int> x;
+  for (const VoxelBlock* block : map.sorted_blocks()) x.push_back(block->index.x());
+  EXPECT_THAT(x, testing::ElementsAre(-1, -1, 0, 1));
+  EXPECT_EQ(map.sorted_blocks().front()->index.y(), -5);
+}
+
+TEST(VoxelMap, ACopyIsIndependent) {
+  VoxelMap map(0.05);
+  set(map, {1, 2, 3}, 0.25F);
+  VoxelMap copy = map;
+  set(copy, {1, 2, 3}, 0.5F);
+  EXPECT_EQ(map.at({1, 2, 3}).state, 0.25F);
+}
+
+TEST(VoxelMap, LooksUpFarBeyondTheLatticeSafely) {
+  EXPECT_EQ(VoxelMap(0.05).find({2'000'000'000, 0, 0}), nullptr);
+}
+
+TEST(VoxelMap, RefusesImpossibleSizes) {
+  for (const double size_m : {0.0, -0.05, 100.0, std::nan("")})
+    EXPECT_THROW(VoxelMap map(size_m), Error) << size_m;
+}
+
+}  // namespace
+}  // namespace stereovox

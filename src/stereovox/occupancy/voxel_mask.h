@@ -1,0 +1,41 @@
+// A set of voxels of one block.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "stereovox/occupancy/block_index.h"
+
+namespace stereovox {
+
+struct VoxelMask {
+  static constexpr int kBits = 64;
+  std::array<std::uint64_t, kVoxelsPerBlock / kBits> words{};
+
+  void set(int position) { words[word_of(position)] |= bit_of(position); }
+  void reset(int position) { words[word_of(position)] &= ~bit_of(position); }
+  bool contains(int position) const { return (words[word_of(position)] & bit_of(position)) != 0; }
+  bool is_empty() const {
+    return std::ranges::all_of(words, [](std::uint64_t word) { return word == 0; });
+  }
+  VoxelMask& operator|=(const VoxelMask& other) {
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] |= other.words[i];
+    return *this;
+  }
+
+ private:
+  static std::size_t word_of(int position) { return static_cast<std::size_t>(position / kBits); }
+  static std::uint64_t bit_of(int position) { return std::uint64_t{1} << (position % kBits); }
+};
+
+// Calls visit(position) for each voxel of the set, in increasing order.
+template <class Visit>
+void for_each_in(const VoxelMask& mask, Visit visit) {
+  for (std::size_t i = 0; i < mask.words.size(); ++i)
+    for (std::uint64_t rest = mask.words[i]; rest != 0; rest &= rest - 1)
+      visit(static_cast<int>(i) * VoxelMask::kBits + std::countr_zero(rest));
+}
+
+}  // namespace stereovox

@@ -1,0 +1,71 @@
+// Images in, maps out: the whole line.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stereovox/core/trajectory.h"
+#include "stereovox/dataset/stereo_sequence.h"
+#include "stereovox/navmap/sight_lines.h"
+#include "stereovox/occupancy/voxel_map.h"
+#include "stereovox/pipeline/pipeline_config.h"
+#include "stereovox/pipeline/stage_times.h"
+#include "stereovox/pipeline/world_frame.h"
+
+namespace stereovox {
+
+// What was made of the frames between two losses of tracking, or since a place was recognised
+// again: poses of one segment share one world.
+struct MapSegment {
+  int id = 0;
+  WorldFrame world;
+  VoxelMap map;
+  SightLines sight_lines;
+  Trajectory trajectory;  // T_world_camera of every frame that was mapped
+};
+
+// Consecutive frames without a trusted pose; they touched no map.
+struct LostStretch {
+  std::int64_t from_ns = 0, to_ns = 0;
+  int frames = 0;
+  std::string reason;  // of the first of them
+};
+
+struct BuildResult {
+  std::vector<MapSegment> segments;  // most frames first; at least one
+  std::vector<LostStretch> lost;
+  std::vector<std::string> warnings;
+  RectifiedCamera camera;
+  StageTimes times;
+  int frames = 0, tracked = 0;
+  double wall_s = 0.0;
+  bool was_stopped = false;
+
+  double tracked_percent() const { return frames == 0 ? 0.0 : 100.0 * tracked / frames; }
+};
+
+// The state after a frame.
+struct Progress {
+  int frame = 0, frames = 0;  // done, in all
+  bool is_tracked = false;
+  int inliers = 0;
+  double elapsed_s = 0.0;
+  double match_ms = 0.0, odometry_ms = 0.0, occupancy_ms = 0.0;  // of this frame
+  std::size_t voxel_blocks = 0;
+};
+
+struct ProgressSink {
+  std::function<void(const Progress&)> frame_done = [](const Progress&) {};
+  std::function<void(const std::string&)> warn = [](const std::string&) {};
+  std::function<bool()> should_stop = [] { return false; };  // asked before each frame
+};
+
+// Poses come from odometry, or from `given_poses` of the left camera as calibrated; a frame that
+// has none there counts as lost. Throws Error for input that cannot be used.
+BuildResult build_maps(StereoSequence& sequence, const PipelineConfig& config,
+                       const std::optional<Trajectory>& given_poses, const ProgressSink& progress);
+
+}  // namespace stereovox

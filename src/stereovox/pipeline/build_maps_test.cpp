@@ -1,0 +1,138 @@
+#include "stereovox/pipeline/build_maps.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "stereovox/core/error.h"
+#include "stereovox/dataset/open_sequence.h"
+
+namespace stereovox {
+namespace {
+
+PipelineConfig config_for(int frames) {
+  PipelineConfig config;
+  config.dataset.max_frames = frames;
+  config.threads = 2;
+  config.occupancy.voxel_size_m = 0.1;
+  return config;
+}
+
+std::unique_ptr<StereoSequence> demo(const PipelineConfig& config) {
+  return open_sequence(std::string(STEREOVOX_SOURCE_DIR) + "/data/office_demo", config.dataset,
+                       std::nullopt);
+}
+
+// The demo drive as a camera that now and then sees nothing.
+class Blinking : public StereoSequence {
+ public:
+  Blinking(std::unique_ptr<StereoSequence> sequence, std::set<int> dark)
+      : sequence_(std::move(sequence)), dark_(std::move(dark)) {}
+  const StereoRig& rig() const override { return sequence_->rig(); }
+  const SequenceInfo& info() const override { return sequence_->info(); }
+  const Trajectory& truth() const override { return sequence_->truth(); }
+  std::span<const SkippedPair> skipped() const override { return sequence_->skipped(); }
+  std::optional<StereoFrame> next() override {
+    std::optional<StereoFrame> frame = sequence_->next();
+    if (frame && dark_.contains(frame->index)) {
+      frame->left.pixels = cv::Mat1b(frame->left.pixels.size(), 2);
+      frame->right.pixels = cv::Mat1b(frame->right.pixels.size(), 2);
+    }
+    return frame;
+  }
+
+ private:
+  std::unique_ptr<StereoSequence> sequence_;
+  std::set<int> dark_;
+};
+
+BuildResult build(StereoSequence& sequence, const PipelineConfig& config,
+                  const std::optional<Trajectory>& poses = std::nullopt) {
+  return build_maps(sequence, config, poses, ProgressSink{});
+}
+
+TEST(BuildMaps, TracksAndMapsEachFrame) {
+  const PipelineConfig config = config_for(8);
+  const auto sequence = demo(config);
+  const BuildResult result = build(*sequence, config);
+  EXPECT_EQ(result.frames, 8);
+  EXPECT_EQ(result.tracked, 8);
+  ASSERT_EQ(result.segments.size(), 1U);
+  EXPECT_EQ(result.segments[0].trajectory.size(), 8U);
+  EXPECT_EQ(result.segments[0].map.frames_integrated, 8U);
+  EXPECT_NEAR(result.segments[0].trajectory[0].T_world_camera.translation.z(), 0.62, 0.03)
+      << "height of the camera from the ground plane";
+}
+
+TEST(BuildMaps, ALostFrameIsReportedWithItsTimeAndTouchesNoMap) {
+  const PipelineConfig config = config_for(12);
+  Blinking sequence(demo(config), {6, 7});
+  const BuildResult result = build(sequence, config);
+  EXPECT_EQ(result.frames, 12);
+  EXPECT_EQ(result.tracked, 10);
+  ASSERT_EQ(result.lost.size(), 1U);
+  EXPECT_EQ(result.lost[0].from_ns, 2'400'000'000);
+  EXPECT_EQ(result.lost[0].to_ns, 2'800'000'000);
+  EXPECT_EQ(result.lost[0].frames, 2);
+  EXPECT_FALSE(result.lost[0].reason.empty());
+  EXPECT_EQ(result.segments[0].map.frames_integrated, 10U)
+      << "found back by recognising a keyframe";
+}
+
+TEST(BuildMaps, GivenPosesAreUsedAndFramesWithoutOneAreLost) {
+  const PipelineConfig config = config_for(10);
+  const auto sequence = demo(config);
+  Trajectory poses = sequence->truth();
+  poses.resize(7);
+  const BuildResult result = build(*sequence, config, poses);
+  EXPECT_EQ(result.tracked, 7);
+  ASSERT_EQ(result.lost.size(), 1U);
+  EXPECT_EQ(result.lost[0].reason, "no pose is given for this time");
+  const Trajectory& used = result.segments[0].trajectory;
+  EXPECT_LT((used[3].T_world_camera.translation - poses[3].T_world_camera.translation).norm(),
+            1e-9);
+  EXPECT_NEAR(result.segments[0].map.floor_z_m(), 0.0, 0.03);
+}
+
+TEST(BuildMaps, StopsWhenAskedAndKeepsWhatThereIs) {
+  const PipelineConfig config = config_for(12);
+  const auto sequence = demo(config);
+  int done = 0;
+  ProgressSink sink;
+  sink.frame_done = [&](const Progress& progress) { done = progress.frame; };
+  sink.should_stop = [&] { return done == 3; };
+  const BuildResult result = build_maps(*sequence, config, std::nullopt, sink);
+  EXPECT_TRUE(result.was_stopped);
+  EXPECT_EQ(result.frames, 3);
+  EXPECT_EQ(result.segments[0].map.frames_integrated, 3U);
+}
+
+TEST(BuildMaps, AnErrorOfTheFrontHalfReachesTheCaller) {
+  const PipelineConfig config = config_for(12);
+  class Failing : public Blinking {
+   public:
+    using Blinking::Blinking;
+    std::optional<StereoFrame> next() override {
+      if (++calls_ > 7) throw Error("left/000007.png: is cut off");
+      return Blinking::next();
+    }
+
+   private:
+    int calls_ = 0;
+  };
+  Failing sequence(demo(config), {});
+  EXPECT_THROW(build(sequence, config), Error);
+}
+
+TEST(BuildMaps, ACameraThatSeesNothingLeavesAnEmptyMap) {
+  const PipelineConfig config = config_for(4);
+  Blinking sequence(demo(config), {0, 1, 2, 3});
+  const BuildResult result = build(sequence, config);
+  EXPECT_EQ(result.tracked, 0);
+  ASSERT_EQ(result.segments.size(), 1U);
+  EXPECT_EQ(result.segments[0].map.known_voxel_count(), 0U);
+}
+
+}  // namespace
+}  // namespace stereovox

@@ -1,0 +1,104 @@
+#include "stereovox/pipeline/outputs.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "stereovox/core/error.h"
+#include "stereovox/io/atomic_file.h"
+#include "stereovox/io/image_file.h"
+#include "stereovox/io/trajectory_file.h"
+#include "stereovox/navmap/draw_map.h"
+#include "stereovox/navmap/project_to_2d.h"
+#include "stereovox/navmap/write_map_server.h"
+#include "stereovox/occupancy/voxel_map_file.h"
+#include "stereovox/pipeline/report.h"
+
+namespace stereovox {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 3> kResultNames = {"map.svx", "nav.yaml", "report.json"};
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    throw ResourceError(folder.string() + ": is a file, not a folder");
+  fs::create_directories(folder, error);
+  if (error)
+    throw ResourceError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+}
+
+void check_writable(const fs::path& folder) {
+  const fs::path probe = folder / ".stereovox_probe";
+  std::ofstream file(probe);
+  file << "probe" << std::flush;
+  const int reason = errno;
+  const bool is_good = file.good();
+  file.close();
+  std::error_code ignored;
+  fs::remove(probe, ignored);
+  if (!is_good)
+    throw ResourceError(
+        fmt::format("{}: cannot be written to: {}", folder.string(), std::strerror(reason)));
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  write_file_atomically(path, [&](std::ostream& out) { out << text; });
+}
+
+// Threads never change results, so they must not change the map's bytes.
+std::string yaml_without_threads(PipelineConfig config) {
+  config.threads = 0;
+  return to_yaml(config);
+}
+
+void write_segment(const fs::path& folder, const PipelineConfig& config, MapSegment& segment) {
+  make_folder(folder);
+  segment.map.attachments["config.yaml"] = yaml_without_threads(config);
+  segment.map.attachments[kSightLinesAttachment] = to_bytes(segment.sight_lines);
+  write_voxel_map(folder / "map.svx", segment.map);
+  write_navigation_map(folder / "nav.yaml", segment.map, segment.sight_lines, segment.trajectory,
+                       config.navmap, MapServerMode::trinary);
+  write_tum(folder / "trajectory.tum", segment.trajectory,
+            "left rectified camera (x right, y down, z forward) in the world (z up)");
+  write_kitti_poses(folder / "trajectory_kitti.txt", segment.trajectory);
+}
+
+}  // namespace
+
+void prepare_output_folder(const fs::path& folder, bool overwrite) {
+  make_folder(folder);
+  for (const char* name : kResultNames)
+    if (!overwrite && fs::exists(folder / name))
+      throw UsageError(folder.string() +
+                       ": holds the results of a run; give --overwrite to replace them");
+  check_writable(folder);
+}
+
+void write_outputs(const fs::path& folder, const StereoSequence& sequence,
+                   const PipelineConfig& config, BuildResult& result) {
+  write_segment(folder, config, result.segments.front());
+  for (std::size_t i = 1; i < result.segments.size(); ++i)
+    write_segment(folder / fmt::format("segment_{}", i + 1), config, result.segments[i]);
+  write_text(folder / "config.yaml", to_yaml(config));
+  write_text(folder / "report.json", report(sequence, config, result).dump(2) + "\n");
+}
+
+OccupancyGrid2D write_navigation_map(const fs::path& yaml_path, const VoxelMap& map,
+                                     const SightLines& sight_lines, const Trajectory& trajectory,
+                                     const NavmapParams& params, MapServerMode mode) {
+  const OccupancyGrid2D grid = project_to_2d(map, sight_lines, params);
+  std::vector<Eigen::Vector2d> path;
+  for (const StampedPose& pose : trajectory)
+    path.emplace_back(pose.T_world_camera.translation.head<2>());
+  write_map_server(yaml_path, grid, mode);
+  write_png(fs::path(yaml_path).replace_extension(".png"), draw_map(grid, path));
+  return grid;
+}
+
+}  // namespace stereovox
