@@ -194,10 +194,16 @@ TEST(EndToEnd, InfoAndCheckTellAboutEverythingARunMakes) {
   const fs::path data = office_extract("data", 6);
   const fs::path out = empty_folder("out");
   ASSERT_EQ(run_program("run " + quoted(data) + " -q -o " + quoted(out)).exit_code, 0);
-  for (const fs::path& what : {data, out, out / "map.svx"}) {
+  for (const fs::path& what : {data, out, out / "map.svx", out / "nav.yaml"}) {
     const ProgramResult info = run_program("info " + quoted(what));
     EXPECT_EQ(info.exit_code, 0) << info.output;
     EXPECT_GT(info.output.size(), 50U);
+  }
+  for (const char* map : {"map.svx", "nav.yaml"}) {
+    const fs::path picture = out / (std::string(map) + ".picture.png");
+    EXPECT_EQ(run_program("info " + quoted(out / map) + " --picture " + quoted(picture)).exit_code,
+              0);
+    EXPECT_GT(fs::file_size(picture), 1000U) << map;
   }
   for (const fs::path& what : {data, out / "map.svx", out / "nav.yaml", data / "calib.yaml"}) {
     const ProgramResult check = run_program("check " + quoted(what));

@@ -10,6 +10,10 @@
 #include "stereovox/core/timestamp.h"
 #include "stereovox/core/version.h"
 #include "stereovox/io/file_bytes.h"
+#include "stereovox/io/image_file.h"
+#include "stereovox/navmap/draw_map.h"
+#include "stereovox/navmap/draw_voxels.h"
+#include "stereovox/navmap/read_map_server.h"
 #include "stereovox/occupancy/voxel_map_file.h"
 #include "stereovox/pipeline/report.h"
 
@@ -19,14 +23,15 @@ namespace {
 namespace fs = std::filesystem;
 
 struct InfoOptions {
-  std::string what;
+  std::string what, picture;
   bool parameters = false;
 };
 
 constexpr std::uint64_t kMaxReportBytes = 256ULL << 20;
 
-void print_map(const fs::path& path) {
+void print_map(const fs::path& path, const std::string& picture) {
   const VoxelMap map = read_voxel_map(path);
+  if (!picture.empty()) write_png(picture, draw_voxels(map));
   const MapCounts counts = count_voxels(map, NavmapParams{}.threshold);
   std::cout << fmt::format("{}: voxel map, {} bytes on disk, {:.1f} MB in memory\n", path.string(),
                            fs::file_size(path), static_cast<double>(map.memory_bytes()) / 1e6);
@@ -43,6 +48,15 @@ void print_map(const fs::path& path) {
   }
   for (const auto& [name, blob] : map.attachments)
     std::cout << fmt::format("attached: {}, {} bytes\n", name, blob.size());
+}
+
+void print_navigation_map(const fs::path& path, const std::string& picture) {
+  const LoadedMap loaded = read_map_server(path);
+  if (!picture.empty()) write_png(picture, draw_map(loaded.grid, {}));
+  const GridGeometry& grid = loaded.grid.geometry;
+  std::cout << fmt::format("{}: navigation map, {} x {} cells of {} m from ({}, {}) m\n",
+                           path.string(), grid.width, grid.height, grid.cell_size_m,
+                           grid.origin_m.x(), grid.origin_m.y());
 }
 
 void print_run(const fs::path& folder) {
@@ -82,7 +96,9 @@ ExitCode run(const InfoOptions& options) {
   }
   const fs::path path = options.what;
   if (path.extension() == ".svx")
-    print_map(path);
+    print_map(path, options.picture);
+  else if (path.extension() == ".yaml")
+    print_navigation_map(path, options.picture);
   else if (fs::exists(path / "report.json"))
     print_run(path);
   else
@@ -95,7 +111,11 @@ ExitCode run(const InfoOptions& options) {
 void add_info(CLI::App& program, Action& action) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command = program.add_subcommand("info", "what a data set, a map or a run holds");
-  command->add_option("WHAT", options->what, "data set, map.svx or the folder of a run");
+  command->add_option("WHAT", options->what, "data set, map.svx, nav.yaml or the folder of a run");
+  command
+      ->add_option("--picture", options->picture,
+                   "draw the map: voxels in colour by height, or cells")
+      ->type_name("FILE.png");
   command->add_flag("--parameters", options->parameters, "print the page of all parameters");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -81,7 +81,7 @@ void for_each_sample(const FrameView& frame, int step, RowRange rows, Visit visi
 template <class Model>
 void mark_surfaces(const Model& model, const FrameView& frame, RowRange rows, MarkedBlocks& out) {
   const double size_m = frame.params.voxel_size_m;
-  for_each_sample(frame, frame.params.pixel_step, rows, [&](const PointMeasurement& point) {
+  for_each_sample(frame, frame.steps.surface_px, rows, [&](const PointMeasurement& point) {
     if (!marks_surface(frame, point)) return;
     ++out.points_used;
     const Eigen::Vector3i own = voxel_index_of(size_m, point.p_world);
@@ -97,7 +97,7 @@ void mark_surfaces(const Model& model, const FrameView& frame, RowRange rows, Ma
 
 // Step 3: the space that the rays cross.
 void clear_rays(const FrameView& frame, RowRange rows, MarkedBlocks& out) {
-  for_each_sample(frame, frame.params.ray_step_px, rows, [&](const PointMeasurement& point) {
+  for_each_sample(frame, frame.steps.ray_px, rows, [&](const PointMeasurement& point) {
     const std::optional<Segment> segment = free_segment(frame, point);
     if (!segment) return;
     for_each_voxel_on_segment(segment->from, segment->to, frame.params.voxel_size_m,

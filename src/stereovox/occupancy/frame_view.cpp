@@ -57,6 +57,13 @@ bool is_measured(float disparity_px, float sigma_px) {
 
 }  // namespace
 
+SamplingSteps sampling_steps(const OccupancyParams& params, const RectifiedCamera& camera) {
+  const double voxel_px = camera.pinhole.fx_px * params.voxel_size_m / params.max_clearing_m;
+  const int ray_px = params.ray_step_px > 0 ? params.ray_step_px
+                                            : std::max(1, static_cast<int>(std::ceil(voxel_px)));
+  return {params.pixel_step > 0 ? params.pixel_step : std::max(1, ray_px / 2), ray_px};
+}
+
 FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& camera,
                      const SE3& T_world_camera, std::int64_t stamp_ns,
                      const OccupancyParams& params, VoxelMap& map) {
@@ -68,6 +75,7 @@ FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& cam
   return {.disparity = disparity,
           .camera = camera,
           .params = params,
+          .steps = sampling_steps(params, camera),
           .T_world_camera = T_world_camera,
           .T_camera_world = inverse(T_world_camera),
           .stamp_ms = stamp_in_map_ms(stamp_ns, map),
@@ -117,7 +125,7 @@ double expected_points(const FrameView& frame, const Eigen::Vector3i& voxel) {
   const OccupancyParams& params = frame.params;
   const Eigen::Vector3d center = voxel_center_of(params.voxel_size_m, voxel);
   const double z_m = std::max((frame.T_camera_world * center).z(), params.min_depth_m);
-  const double steps_m = z_m * params.pixel_step;
+  const double steps_m = z_m * frame.steps.surface_px;
   const double area = params.voxel_size_m * params.voxel_size_m;
   return params.valid_fraction * area * frame.camera.pinhole.fx_px * frame.camera.pinhole.fy_px /
          (steps_m * steps_m);

@@ -14,11 +14,21 @@
 
 namespace stereovox {
 
+// Every how many pixels and rows the image is read: for surfaces, and for rays that clear space.
+struct SamplingSteps {
+  int surface_px = 1, ray_px = 1;
+};
+
+// As the parameters say, or where they leave it open (0): rays about one voxel apart at the
+// farthest distance that they clear, and surfaces read twice as densely.
+SamplingSteps sampling_steps(const OccupancyParams& params, const RectifiedCamera& camera);
+
 // Refers to what it was made from.
 struct FrameView {
   const DisparityImage& disparity;
   const RectifiedCamera& camera;
   const OccupancyParams& params;
+  SamplingSteps steps;
   SE3 T_world_camera, T_camera_world;
   std::uint32_t stamp_ms = 0;       // since the map's epoch
   double min_z_m = 0, max_z_m = 0;  // height limits in the world

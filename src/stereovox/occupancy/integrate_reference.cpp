@@ -23,7 +23,7 @@ std::vector<PointMeasurement> measured_points(const FrameView& frame, int step) 
 }
 
 std::vector<PointMeasurement> surface_points(const FrameView& frame) {
-  std::vector<PointMeasurement> points = measured_points(frame, frame.params.pixel_step);
+  std::vector<PointMeasurement> points = measured_points(frame, frame.steps.surface_px);
   std::erase_if(points, [&](const PointMeasurement& p) { return !marks_surface(frame, p); });
   return points;
 }
@@ -53,7 +53,7 @@ float join(const FrameView& frame, const Eigen::Vector3i& voxel, const VoxelEvid
 
 VoxelSet voxels_on_rays(const FrameView& frame) {
   VoxelSet crossed;
-  for (const PointMeasurement& point : measured_points(frame, frame.params.ray_step_px))
+  for (const PointMeasurement& point : measured_points(frame, frame.steps.ray_px))
     if (const auto segment = free_segment(frame, point))
       for_each_voxel_on_segment(segment->from, segment->to, frame.params.voxel_size_m,
                                 [&](const Eigen::Vector3i& voxel) { crossed.insert(voxel); });

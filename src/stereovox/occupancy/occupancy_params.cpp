@@ -50,9 +50,11 @@ OccupancyParams params_of(OccupancyPreset preset) {
 
 void describe_selection(OccupancyParams& p, ParameterList& list) {
   list("voxel_size_m", p.voxel_size_m, {0.005, 2}, "edge length of a voxel");
-  list("pixel_step", p.pixel_step, {1, 64}, "every n-th pixel and row marks surfaces");
-  list("ray_step_px", p.ray_step_px, {1, 64},
-       "every n-th pixel and row clears the space before it");
+  list("pixel_step", p.pixel_step, {0, 64},
+       "every n-th pixel and row marks surfaces; 0 = half the step of the rays");
+  list("ray_step_px", p.ray_step_px, {0, 64},
+       "every n-th pixel and row clears the space before it; 0 = rays a voxel apart at "
+       "max_clearing_m");
   list("min_depth_m", p.min_depth_m, {0.01, 10}, "nearer measurements are ignored");
   list("max_depth_m", p.max_depth_m, {0.1, 200}, "farther measurements only clear space");
   list("max_clearing_m", p.max_clearing_m, {0.1, 200}, "space farther away is never cleared");

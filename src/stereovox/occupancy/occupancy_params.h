@@ -34,8 +34,8 @@ struct OccupancyParams {
   OccupancyPreset preset = OccupancyPreset::corrected;
   double voxel_size_m = 0.05;
 
-  int pixel_step = 3;
-  int ray_step_px = 6;
+  int pixel_step = 0;
+  int ray_step_px = 0;
   double min_depth_m = 0.3;
   double max_depth_m = 8.0;
   double max_clearing_m = 5.0;

@@ -15,6 +15,10 @@ constexpr std::int64_t kPoseTolerance_ns = 1'000'000;
 // Between given poses farther apart than this nothing is interpolated.
 constexpr std::int64_t kMaxPoseGap_ns = 250'000'000;
 
+MapSegment empty_segment(int id, const WorldFrame& world, double voxel_size_m) {
+  return {id, world, VoxelMap(voxel_size_m, world.floor_z_m), SightLines{}, Trajectory{}};
+}
+
 }  // namespace
 
 MapBuilder::MapBuilder(const Rectifier& rectifier, const PipelineConfig& config,
@@ -59,8 +63,7 @@ BuildResult MapBuilder::finish() {
     if (segment.placed) result_.segments.push_back(std::move(*segment.placed));
   }
   if (result_.segments.empty())
-    result_.segments.push_back(
-        {0, {}, VoxelMap(config_.occupancy.voxel_size_m), SightLines{}, Trajectory{}});
+    result_.segments.push_back(empty_segment(0, WorldFrame{}, config_.occupancy.voxel_size_m));
   std::ranges::stable_sort(result_.segments, std::ranges::greater{},
                            [](const MapSegment& s) { return s.trajectory.size(); });
   return std::move(result_);
@@ -107,9 +110,7 @@ void MapBuilder::place(int id, GrowingSegment& segment) {
                                            config_.world.ground_plane)});
   const WorldFrame world = given_poses_ ? world_of_given_poses(views, config_.world)
                                         : world_of_odometry(views, config_.world);
-  segment.placed.emplace(MapSegment{id, world,
-                                    VoxelMap(config_.occupancy.voxel_size_m, world.floor_z_m),
-                                    SightLines{}, Trajectory{}});
+  segment.placed = empty_segment(id, world, config_.occupancy.voxel_size_m);
   for (const Located& located : segment.waiting) map(located, *segment.placed);
   segment.waiting.clear();
 }
