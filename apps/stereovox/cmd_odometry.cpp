@@ -60,6 +60,7 @@ Tracked track(StereoSequence& sequence, const PipelineConfig& config, bool verbo
 
 ExitCode run(const OdometryOptions& options) {
   const PipelineConfig config = options.config.load(options.source.shorthands());
+  require_folder_of(options.output);
   const std::unique_ptr<StereoSequence> sequence = options.source.open(config);
   for (const std::string& remark : sequence->info().remarks) warn(remark);
   cv::setNumThreads(std::max(1, config.thread_count() - 1));

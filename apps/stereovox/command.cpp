@@ -62,6 +62,13 @@ std::unique_ptr<StereoSequence> SourceOptions::open(const PipelineConfig& config
                                    : std::move(sequence);
 }
 
+void require_folder_of(const std::filesystem::path& file) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    throw ResourceError(file.string() + ": cannot be written, there is no folder " +
+                        folder.string());
+}
+
 void warn(const std::string& text) { std::cerr << "stereovox: warning: " << text << "\n"; }
 
 }  // namespace stereovox

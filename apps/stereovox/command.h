@@ -56,6 +56,9 @@ struct SourceOptions {
   std::unique_ptr<StereoSequence> open(const PipelineConfig& config) const;
 };
 
+// Throws ResourceError, before any work, when a file of this name could not be made.
+void require_folder_of(const std::filesystem::path& file);
+
 // Prints "stereovox: warning: ..." to standard error.
 void warn(const std::string& text);
 

@@ -1,43 +1,25 @@
-// Local block matching by OpenCV's StereoBM: fast, sparse, fattened at edges. The parameters carry
-// the names of ROS' stereo_image_proc.
+// Local block matching by OpenCV's StereoBM: fast, sparse, fattened at edges.
 #pragma once
 
 #include "stereovox/core/frame.h"
 #include "stereovox/core/image.h"
-#include "stereovox/core/parameters.h"
+#include "stereovox/stereo/disparity_search.h"
 
 namespace stereovox {
 
 struct BlockMatchingParams {
   static constexpr const char* kName = "bm";
 
-  int min_disparity_px = 0;
-  int disparity_range_px = 64;
+  DisparitySearch search{.sigma_px = 0.5};
   int correlation_window_size_px = 15;
-  int prefilter_cap = 31;
   int texture_threshold = 10;
-  int uniqueness_ratio_percent = 10;
-  int left_right_tolerance_px = 1;
-  int speckle_size_px = 100;
-  int speckle_range_px = 2;
-  double sigma_px = 0.5;
 
   void describe(ParameterList& list) {
-    list("min_disparity_px", min_disparity_px, {0, 1024}, "smallest disparity that is searched");
-    list("disparity_range_px", disparity_range_px, {16, 1024},
-         "number of disparities that are searched, rounded up to a multiple of 16");
+    search.describe(list);
     list("correlation_window_size_px", correlation_window_size_px, {5, 63},
          "side of the matched block; even becomes odd");
-    list("prefilter_cap", prefilter_cap, {1, 63}, "image derivatives are clipped to this");
     list("texture_threshold", texture_threshold, {0, 100000},
          "blocks with a smaller sum of derivatives have no disparity");
-    list("uniqueness_ratio_percent", uniqueness_ratio_percent, {0, 100},
-         "the best cost must undercut the second best by this much");
-    list("left_right_tolerance_px", left_right_tolerance_px, {0, 64},
-         "left and right disparities may differ by this much");
-    list("speckle_size_px", speckle_size_px, {0, 100000}, "smaller islands are removed");
-    list("speckle_range_px", speckle_range_px, {1, 64}, "largest disparity step inside an island");
-    list("sigma_px", sigma_px, {0.01, 10}, "standard deviation given to every disparity");
   }
 };
 

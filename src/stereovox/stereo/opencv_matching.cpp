@@ -19,7 +19,8 @@ bool is_recorded(const cv::Mat1b& valid, int v, int u) { return valid.empty() ||
 }  // namespace
 
 DisparityImage match_with_opencv(const RectifiedPair& pair, cv::StereoMatcher& matcher,
-                                 int max_disparity_px, double sigma_px) {
+                                 const DisparitySearch& search) {
+  const int max_disparity_px = search.max_disparity_px();
   cv::Mat1s sixteenths;
   matcher.compute(extended_left(pair.left, max_disparity_px),
                   extended_left(pair.right, max_disparity_px), sixteenths);
@@ -35,7 +36,7 @@ DisparityImage match_with_opencv(const RectifiedPair& pair, cv::StereoMatcher& m
       if (!is_recorded(pair.valid_left, v, u) || !is_recorded(pair.valid_right, v, u_right))
         continue;
       out.disparity_px(v, u) = disparity_px;
-      out.sigma_px(v, u) = static_cast<float>(sigma_px);
+      out.sigma_px(v, u) = static_cast<float>(search.sigma_px);
     }
   }
   return out;

@@ -6,6 +6,7 @@
 
 #include "stereovox/core/frame.h"
 #include "stereovox/core/image.h"
+#include "stereovox/stereo/disparity_search.h"
 
 namespace cv {
 class StereoMatcher;
@@ -13,11 +14,10 @@ class StereoMatcher;
 
 namespace stereovox {
 
-inline int round_up_to_16(int value) { return (value + 15) / 16 * 16; }
-
-// Runs `matcher` on images extended to the left by `max_disparity_px`, so that the left border is
-// matched too, and keeps the disparities that are > 0 and join two recorded pixels.
+// Runs `matcher`, which is set up as `search` says, on images extended to the left by the largest
+// disparity, so that the left border is matched too, and keeps the disparities that are > 0 and
+// join two recorded pixels.
 DisparityImage match_with_opencv(const RectifiedPair& pair, cv::StereoMatcher& matcher,
-                                 int max_disparity_px, double sigma_px);
+                                 const DisparitySearch& search);
 
 }  // namespace stereovox

@@ -10,12 +10,13 @@ namespace stereovox {
 DisparityImage match(const RectifiedPair& pair, const SemiGlobalMatchingParams& p) {
   if (p.smoothness_large <= p.smoothness_small)
     throw UsageError("matcher.smoothness_large must exceed matcher.smoothness_small");
-  const int range_px = round_up_to_16(p.disparity_range_px);
+  const DisparitySearch& search = p.search;
   const auto matcher = cv::StereoSGBM::create(
-      p.min_disparity_px, range_px, p.block_size_px | 1, p.smoothness_small, p.smoothness_large,
-      p.left_right_tolerance_px, p.prefilter_cap, p.uniqueness_ratio_percent, p.speckle_size_px,
-      p.speckle_range_px, cv::StereoSGBM::MODE_SGBM_3WAY);
-  return match_with_opencv(pair, *matcher, p.min_disparity_px + range_px, p.sigma_px);
+      search.min_disparity_px, search.range_px(), p.block_size_px | 1, p.smoothness_small,
+      p.smoothness_large, search.left_right_tolerance_px, search.prefilter_cap,
+      search.uniqueness_ratio_percent, search.speckle_size_px, search.speckle_range_px,
+      cv::StereoSGBM::MODE_SGBM_3WAY);
+  return match_with_opencv(pair, *matcher, search);
 }
 
 }  // namespace stereovox
