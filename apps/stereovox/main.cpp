@@ -73,16 +73,23 @@ ExitCode parse_and_run(CLI::App& program, const Action& action, int argc, char**
   }
 }
 
-}  // namespace
-}  // namespace stereovox
-
-int main(int argc, char** argv) {
-  using namespace stereovox;
+ExitCode run_program(int argc, char** argv) {
   CLI::App program{"stereovox: stereo images in, navigation maps out"};
   program.set_version_flag("--version", std::string(version()));
   program.footer(kFooter);
   program.require_subcommand(1);
   Action action;
   for (const auto add : kCommands) add(program, action);
-  return static_cast<int>(parse_and_run(program, action, argc, argv));
+  return parse_and_run(program, action, argc, argv);
+}
+
+}  // namespace
+}  // namespace stereovox
+
+int main(int argc, char** argv) {
+  try {
+    return static_cast<int>(stereovox::run_program(argc, argv));
+  } catch (...) {  // no memory even for a message
+    return static_cast<int>(stereovox::ExitCode::internal);
+  }
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -22,7 +23,7 @@ double frames_per_second(const Progress& p) {
 std::string time_to_go(const Progress& p) {
   const double rate = frames_per_second(p);
   if (rate <= 0.0) return "?";
-  const int seconds = static_cast<int>((p.frames - p.frame) / rate + 0.5);
+  const long seconds = std::lround((p.frames - p.frame) / rate);
   return fmt::format("{}:{:02}", seconds / 60, seconds % 60);
 }
 

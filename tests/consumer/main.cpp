@@ -7,7 +7,8 @@
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   stereovox::PipelineConfig config;
-  stereovox::apply_settings({{"dataset.max_frames", "6"}, {"occupancy.voxel_size_m", "0.1"}}, config);
+  stereovox::apply_settings({{"dataset.max_frames", "6"}, {"occupancy.voxel_size_m", "0.1"}},
+                            config);
   const auto sequence = stereovox::open_sequence(argv[1], config.dataset, std::nullopt);
   const stereovox::BuildResult result =
       stereovox::build_maps(*sequence, config, std::nullopt, stereovox::ProgressSink{});

@@ -69,8 +69,8 @@ void ParameterList::operator()(const std::string& name, bool& value, const std::
 
 void ParameterList::add_choice(const std::string& name, std::span<const std::string> names,
                                const std::string& sentence, bool selects,
-                               std::function<std::size_t()> get,
-                               std::function<void(std::size_t)> set) {
+                               const std::function<std::size_t()>& get,
+                               const std::function<void(std::size_t)>& set) {
   const std::string path = prefix_ + name;
   const std::string choices = fmt::format("{}", fmt::join(names, " | "));
   parameters_.push_back({path, choices, sentence, selects, [names, get] { return names[get()]; },

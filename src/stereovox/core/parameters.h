@@ -89,8 +89,9 @@ class ParameterList {
 
  private:
   void add_choice(const std::string& name, std::span<const std::string> names,
-                  const std::string& sentence, bool selects, std::function<std::size_t()> get,
-                  std::function<void(std::size_t)> set);
+                  const std::string& sentence, bool selects,
+                  const std::function<std::size_t()>& get,
+                  const std::function<void(std::size_t)>& set);
 
   template <class... Alternatives>
   static void emplace_alternative(std::variant<Alternatives...>& value, std::size_t index) {

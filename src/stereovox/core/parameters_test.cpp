@@ -63,7 +63,8 @@ TEST(Parameters, AreListedInOrderWithTheirValues) {
 
 TEST(Parameters, AreSetByNameAndTheChosenTypeComesFirst) {
   Config config;
-  apply_settings({{"reach.distance_m", "12.5"}, {"inner.shape", "cube"}, {"reach.type", "far"}}, config);
+  apply_settings({{"reach.distance_m", "12.5"}, {"inner.shape", "cube"}, {"reach.type", "far"}},
+                 config);
   EXPECT_EQ(std::get<Far>(config.reach).distance_m, 12.5);
   EXPECT_EQ(config.inner.shape, Shape::cube);
 }

@@ -102,7 +102,7 @@ std::vector<std::size_t> lines_of(const Paths& lefts, const Paths& all, std::siz
                                   const fs::path& times_file) {
   if (lines == lefts.size()) return lines_by_order(lefts, lefts);
   if (lines == all.size()) return lines_by_order(lefts, all);
-  const std::vector<std::size_t> found = lines_by_number(lefts, lines);
+  std::vector<std::size_t> found = lines_by_number(lefts, lines);
   if (found.empty())
     throw Error(fmt::format("{}: has {} times for {} left images", times_file.string(), lines,
                             lefts.size()));
@@ -138,9 +138,9 @@ void drop_backward(std::vector<Timed>& entries, SequenceInfo& info,
 
   std::vector<Timed> kept;
   for (const std::size_t i : increasing.kept) kept.push_back(std::move(entries[i]));
-  const auto first =
-      std::ranges::mismatch(increasing.kept, std::views::iota(std::size_t{0}, entries.size()));
-  const std::string first_name = name(entries[*first.in2]);
+  std::size_t first = 0;  // that is left out
+  while (first < increasing.kept.size() && increasing.kept[first] == first) ++first;
+  const std::string first_name = name(entries[first]);
   info.duplicates += increasing.duplicates;
   if (increasing.duplicates > 0)
     info.remarks.push_back(

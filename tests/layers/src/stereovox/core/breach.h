@@ -1,3 +1,3 @@
 // Breaks two rules on purpose; check_layers.py must find both.
-#include "stereovox/io/pfm.h"
 #include "error.h"
+#include "stereovox/io/pfm.h"
