@@ -132,6 +132,7 @@ template <class Timed>
 void drop_backward(std::vector<Timed>& entries, SequenceInfo& info,
                    const std::function<std::string(const Timed&)>& name) {
   std::vector<std::int64_t> stamps_ns;
+  stamps_ns.reserve(entries.size());
   for (const Timed& entry : entries) stamps_ns.push_back(entry.stamp_ns);
   const IncreasingStamps increasing = choose_increasing(stamps_ns);
   if (increasing.kept.size() == entries.size()) return;
