@@ -1,6 +1,7 @@
 #include "stereovox/pipeline/stage_times.h"
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 
 namespace stereovox {
@@ -14,7 +15,7 @@ double thread_cpu_ms() {
 
 double quantile(const std::vector<double>& sorted, double fraction) {
   const double position = fraction * static_cast<double>(sorted.size() - 1);
-  return sorted[static_cast<std::size_t>(position + 0.5)];
+  return sorted[static_cast<std::size_t>(std::lround(position))];
 }
 
 }  // namespace

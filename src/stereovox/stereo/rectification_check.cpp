@@ -35,12 +35,13 @@ double vertex_offset(double before, double at, double after) {
   return std::abs(curvature) < 1e-12 ? 0.0 : 0.5 * (before - after) / curvature;
 }
 
-double best_elsewhere(cv::Mat1f scores, cv::Point best) {
+double best_elsewhere(const cv::Mat1f& scores, cv::Point best) {
   const cv::Rect around(best.x - kPatchRadius_px, best.y - kPatchRadius_px, 2 * kPatchRadius_px + 1,
                         2 * kPatchRadius_px + 1);
-  scores(around & cv::Rect({}, scores.size())).setTo(-1.0F);
+  cv::Mat1f rest = scores.clone();
+  rest(around & cv::Rect({}, rest.size())).setTo(-1.0F);
   double rival = 0.0;
-  cv::minMaxLoc(scores, nullptr, &rival);
+  cv::minMaxLoc(rest, nullptr, &rival);
   return rival;
 }
 
