@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "program.h"
+#include "stereovox/io/image_file.h"
 
 namespace stereovox {
 namespace {
@@ -159,6 +160,29 @@ TEST(BadOutput, ResultsAreReplacedOnlyOnRequest) {
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_THAT(again.output, HasSubstr("holds the results of a run; give --overwrite"));
   EXPECT_EQ(run_program(command + " --overwrite").exit_code, 0);
+}
+
+TEST(BadInput, AFileThatIsNoMapAndNoCalibrationIsRefused) {
+  const fs::path file = empty_folder("data") / "words.yaml";
+  std::ofstream(file) << "just words\n";
+  const ProgramResult result = run_program("check " + quoted(file));
+  EXPECT_EQ(result.exit_code, 3) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("words.yaml"));
+}
+
+TEST(BadInput, ConversionsOfImagesAreStated) {
+  const fs::path data = office_extract("data", 3);
+  for (const char* side : {"left", "right"})
+    for (const char* name : {"000000.png", "000001.png", "000002.png"}) {
+      const cv::Mat grey = read_image(data / side / name);
+      cv::Mat deep;
+      grey.convertTo(deep, CV_16U, 256.0);
+      write_png(data / side / name, deep);
+    }
+  const ProgramResult result =
+      run_program("run " + quoted(data) + " -q -o " + quoted(empty_folder("out")));
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("16 bit"));
 }
 
 TEST(BadInput, DamagedMapsAreRefused) {

@@ -111,7 +111,9 @@ ExitCode check_navigation_map(const fs::path& path) {
 }
 
 bool is_navigation_map(const fs::path& path) {
-  return path.extension() == ".yaml" && load_yaml(path)["image"].IsDefined();
+  if (path.extension() != ".yaml") return false;
+  const YAML::Node root = load_yaml(path);
+  return root.IsMap() && root["image"].IsDefined();
 }
 
 ExitCode run(const CheckOptions& options) {

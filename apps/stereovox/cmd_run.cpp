@@ -63,6 +63,12 @@ DisplayMode display_mode(const RunOptions& options) {
   return options.verbose ? DisplayMode::verbose : DisplayMode::automatic;
 }
 
+// Remarks grow while images are read; `from` counts those that were shown already.
+void show_remarks(const StereoSequence& sequence, std::size_t from) {
+  const std::vector<std::string>& remarks = sequence.info().remarks;
+  for (std::size_t i = from; i < remarks.size(); ++i) warn(remarks[i]);
+}
+
 void print_source(const StereoSequence& sequence) {
   const SequenceInfo& info = sequence.info();
   const PinholeCamera& c = sequence.rig().left.pinhole;
@@ -74,7 +80,7 @@ void print_source(const StereoSequence& sequence) {
 
 void print_stages(const StageTimes& times) {
   std::cout << fmt::format("{:<12}{:>12}{:>12}{:>12}\n", "stage", "median ms", "p95 ms", "cpu ms");
-  for (const char* stage : {"rectify", "disparity", "odometry", "occupancy", "navmap"}) {
+  for (const char* stage : kStages) {
     const StageSummary s = times.summary(stage);
     std::cout << fmt::format("{:<12}{:>12.1f}{:>12.1f}{:>12.1f}\n", stage, s.median_ms, s.p95_ms,
                              s.cpu_ms);
@@ -132,7 +138,8 @@ ExitCode run(const RunOptions& options) {
   prepare_output_folder(options.output, options.overwrite);
   const bool talks = !options.quiet && !options.json_progress;
   if (talks) print_source(*sequence);
-  for (const std::string& remark : sequence->info().remarks) warn(remark);
+  const std::size_t remarks_before = sequence->info().remarks.size();
+  show_remarks(*sequence, 0);
   for (const std::string& oddity : oddities(sequence->rig())) warn(oddity);
 
   // The stages overlap: one core maps while the others match.
@@ -141,6 +148,7 @@ ExitCode run(const RunOptions& options) {
   RunDisplay display(display_mode(options));
   BuildResult result = build_maps(*sequence, config, poses, sink_for(display));
   display.end();
+  show_remarks(*sequence, remarks_before);
   for (const SkippedPair& pair : sequence->skipped())
     warn(fmt::format("{}: skipped: {}", pair.name, pair.reason));
   write_outputs(options.output, *sequence, config, result);

@@ -15,6 +15,8 @@ constexpr double kMinBaseline_m = 0.005, kMaxBaseline_m = 10.0;
 constexpr double kMinUsualBaseline_m = 0.01, kMaxUsualBaseline_m = 3.0;
 // Calibration files round their matrices; 1e-3 forgives three digits and catches a wrong entry.
 constexpr double kRotationTolerance = 1e-3;
+// Share of the baseline that must lie along the left camera's x axis: beside it, within 45 degrees.
+constexpr double kMinSideways_share = 0.7;
 constexpr int kMaxSide_px = 16384;
 
 struct Checker {
@@ -74,7 +76,7 @@ void check_baseline(const Checker& check, const StereoRig& rig) {
         fmt::format("right camera is {:.4g} m to the left of the left camera; are the cameras "
                     "swapped or the sign of the baseline wrong?",
                     -right_in_left.x()));
-  if (right_in_left.x() < 0.7 * baseline_m)
+  if (right_in_left.x() < kMinSideways_share * baseline_m)
     check.fail(fmt::format("right camera is at ({:.4g}, {:.4g}, {:.4g}) m, not beside the left one",
                            right_in_left.x(), right_in_left.y(), right_in_left.z()));
   if (baseline_m < kMinBaseline_m || baseline_m > kMaxBaseline_m)

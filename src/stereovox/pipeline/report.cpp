@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 
 #include <Eigen/Core>
-#include <array>
 
 #include "stereovox/core/timestamp.h"
 #include "stereovox/core/version.h"
@@ -12,9 +11,6 @@ namespace stereovox {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr std::array<const char*, 5> kStages = {"rectify", "disparity", "odometry", "occupancy",
-                                                "navmap"};
 
 ordered_json stages_json(const StageTimes& times) {
   ordered_json stages;

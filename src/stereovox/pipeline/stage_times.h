@@ -1,6 +1,7 @@
 // How long the stages take, frame by frame.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <map>
 #include <string>
@@ -8,6 +9,10 @@
 #include <vector>
 
 namespace stereovox {
+
+// In the order in which a frame passes through them.
+inline constexpr std::array<const char*, 5> kStages = {"rectify", "disparity", "odometry",
+                                                       "occupancy", "navmap"};
 
 struct Duration {
   double wall_ms = 0.0, cpu_ms = 0.0;  // cpu: of the calling thread

@@ -16,12 +16,13 @@ struct DisparitySearch {
   int speckle_range_px = 2;
   double sigma_px = 0.25;
 
-  // OpenCV wants a multiple of 16.
+  // OpenCV wants a multiple of 16, and counts sixteenths of a pixel in 16 bits: the ranges below
+  // keep the largest disparity under 2048.
   int range_px() const { return (disparity_range_px + 15) / 16 * 16; }
   int max_disparity_px() const { return min_disparity_px + range_px(); }
 
   void describe(ParameterList& list) {
-    list("min_disparity_px", min_disparity_px, {0, 1024}, "smallest disparity that is searched");
+    list("min_disparity_px", min_disparity_px, {0, 512}, "smallest disparity that is searched");
     list("disparity_range_px", disparity_range_px, {16, 1024},
          "number of disparities that are searched, rounded up to a multiple of 16");
     list("prefilter_cap", prefilter_cap, {1, 63}, "image derivatives are clipped to this");

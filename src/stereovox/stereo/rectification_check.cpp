@@ -14,6 +14,8 @@ namespace {
 
 constexpr int kCorners = 150;
 constexpr double kCornerQuality = 0.01;
+// Of the image width: between corners, and how far to either side a match is sought.
+constexpr double kCornerDistance_share = 0.025, kReach_share = 0.25;
 constexpr int kPatchRadius_px = 7;
 constexpr int kSearchRows_px = 8;
 // Correlation that a true match reaches and that a chance match hardly does.
@@ -78,11 +80,12 @@ std::optional<Offset> find_again(const RectifiedPair& pair, cv::Point corner, in
 CornerOffsets measure_corner_offsets(const RectifiedPair& pair) {
   std::vector<cv::Point2f> corners;
   const int width = pair.left.width();
-  cv::goodFeaturesToTrack(pair.left.pixels, corners, kCorners, kCornerQuality, width / 40.0,
-                          pair.valid_left);
+  cv::goodFeaturesToTrack(pair.left.pixels, corners, kCorners, kCornerQuality,
+                          width * kCornerDistance_share, pair.valid_left);
   CornerOffsets out;
   for (const cv::Point2f& corner : corners)
-    if (const auto offset = find_again(pair, cv::Point(corner), width / 4)) {
+    if (const auto offset =
+            find_again(pair, cv::Point(corner), static_cast<int>(width * kReach_share))) {
       out.vertical_px.push_back(offset->vertical_px);
       out.disparity_px.push_back(offset->disparity_px);
     }
