@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "stereovox/core/parallel.h"
+#include "stereovox/occupancy/frame_evidence.h"
 #include "stereovox/occupancy/voxel_ray.h"
 
 namespace stereovox {
@@ -95,6 +96,20 @@ void mark_surfaces(const Model& model, const FrameView& frame, RowRange rows, Ma
   });
 }
 
+// The same along the rays, when the update rule has a profile.
+void mark_profiles(const SurfaceProfile& profile, const FrameView& frame, RowRange rows,
+                   MarkedBlocks& out) {
+  for_each_sample(frame, frame.steps.surface_px, rows, [&](const PointMeasurement& point) {
+    if (!marks_surface(frame, point)) return;
+    ++out.points_used;
+    for_each_profiled_voxel(
+        profile, frame, point, [&](const Eigen::Vector3i& voxel, float evidence) {
+          out.block_with(voxel).marks.push_back(
+              {static_cast<std::uint16_t>(position_in_block(voxel)), false, evidence});
+        });
+  });
+}
+
 // Step 3: the space that the rays cross.
 void clear_rays(const FrameView& frame, RowRange rows, MarkedBlocks& out) {
   for_each_sample(frame, frame.steps.ray_px, rows, [&](const PointMeasurement& point) {
@@ -109,8 +124,11 @@ void clear_rays(const FrameView& frame, RowRange rows, MarkedBlocks& out) {
 
 MarkedBlocks mark_rows(const FrameView& frame, RowRange rows) {
   MarkedBlocks marked;
-  std::visit([&](const auto& model) { mark_surfaces(model, frame, rows, marked); },
-             frame.params.observation);
+  if (frame.profile != nullptr)
+    mark_profiles(*frame.profile, frame, rows, marked);
+  else
+    std::visit([&](const auto& model) { mark_surfaces(model, frame, rows, marked); },
+               frame.params.observation);
   if (frame.params.observed_set == ObservedSet::raycast) clear_rays(frame, rows, marked);
   return marked;
 }
@@ -155,11 +173,12 @@ std::vector<float> values_where(const VoxelMask& observed) {
 // of evidence clean between blocks, because clearing it costs more than filling it.
 class EvidenceTable {
  public:
-  template <class Union, class Density>
+  // `observation`(evidence, expected points, whether rays crossed the voxel) is O_t.
+  template <class Observation>
   BlockObservation join(const FrameView& frame, const MarkedBlock& marked,
-                        const Eigen::Vector3i& index, const Union& union_rule,
-                        const Density& density) {
+                        const Eigen::Vector3i& index, Observation observation) {
     BlockObservation out{.index = index, .observed = marked.free, .hit = {}, .values = {}};
+    const float min_hit = min_hit_observation(frame);
     for (const Mark& mark : marked.marks) {
       touched_.set(mark.position);
       table_[mark.position].add(mark.evidence, mark.is_inside);
@@ -167,13 +186,13 @@ class EvidenceTable {
     for_each_in(touched_, [&](int i) {
       VoxelEvidence& evidence = table_[static_cast<std::size_t>(i)];
       const double expected = expected_points(frame, voxel_at(index, i));
-      const float value = observation_of(evidence, expected, union_rule, density);
+      const float value = observation(evidence, expected, marked.free.contains(i));
       evidence = {};
-      if (value <= kMinHitObservation) return;
+      if (value == kNothingSaid) return;
       if (out.values.empty()) out.values = values_where(marked.free);
       out.values[static_cast<std::size_t>(i)] = value;
       out.observed.set(i);
-      out.hit.set(i);
+      if (value > min_hit) out.hit.set(i);
     });
     touched_ = {};
     return out;
@@ -184,29 +203,34 @@ class EvidenceTable {
   VoxelMask touched_;
 };
 
+// Joins all blocks, shares of them on threads.
+template <class Observation>
+std::vector<BlockObservation> join_blocks(const FrameView& frame, const MarkedBlocks& marked,
+                                          int threads, Observation observation) {
+  constexpr int kSharesPerThread = 8;  // blocks differ in their work
+  const int shares = threads > 1 ? threads * kSharesPerThread : 1;
+  const int count = static_cast<int>(marked.blocks.size());
+  std::vector<BlockObservation> joined(marked.blocks.size());
+  parallel_for(0, shares, threads, [&](int share) {
+    EvidenceTable table;
+    const int end = static_cast<int>(std::int64_t{count} * (share + 1) / shares);
+    for (int i = static_cast<int>(std::int64_t{count} * share / shares); i < end; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      joined[at] = table.join(frame, marked.blocks[at], marked.indices[at], observation);
+    }
+  });
+  return joined;
+}
+
 }  // namespace
 
 FrameObservation observe_frame(const FrameView& frame, const VoxelMap& map, int threads) {
   MarkedBlocks marked = mark_frame(frame, map, threads);
   FrameObservation out;
   out.points_used = marked.points_used;
-  const int count = static_cast<int>(marked.blocks.size());
-  out.blocks.resize(marked.blocks.size());
-
-  constexpr int kSharesPerThread = 8;  // blocks differ in their work
-  const int shares = threads > 1 ? threads * kSharesPerThread : 1;
-  const auto join_all = [&](const auto& union_rule, const auto& density) {
-    parallel_for(0, shares, threads, [&](int share) {
-      EvidenceTable table;
-      const int end = static_cast<int>(std::int64_t{count} * (share + 1) / shares);
-      for (int i = static_cast<int>(std::int64_t{count} * share / shares); i < end; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        out.blocks[at] =
-            table.join(frame, marked.blocks[at], marked.indices[at], union_rule, density);
-      }
-    });
-  };
-  std::visit(join_all, frame.params.union_rule, frame.params.density);
+  with_observation(frame, [&](auto observation) {
+    out.blocks = join_blocks(frame, marked, threads, observation);
+  });
   out.index = std::move(marked.index);
   return out;
 }

@@ -13,7 +13,7 @@ namespace stereovox {
 struct BlockObservation {
   Eigen::Vector3i index;
   VoxelMask observed, hit;    // hit is a part of observed
-  std::vector<float> values;  // O_t by position, kUnobserved where not; empty = no hit, all are 0
+  std::vector<float> values;  // O_t by position, kUnobserved where not; empty = all are 0
 
   float value_at(int position) const {
     if (!values.empty()) return values[static_cast<std::size_t>(position)];
@@ -26,9 +26,6 @@ struct FrameObservation {
   std::vector<BlockObservation> blocks;
   int points_used = 0;  // measurements that mark a surface
 };
-
-// A voxel with a weaker O_t is not hit.
-inline constexpr float kMinHitObservation = 0.02F;
 
 FrameObservation observe_frame(const FrameView& frame, const VoxelMap& map, int threads);
 

@@ -55,6 +55,33 @@ bool is_measured(float disparity_px, float sigma_px) {
          std::isfinite(sigma_px);
 }
 
+// How long before the point its ray ceases to clear space.
+double free_margin_m(const FrameView& frame, const PointMeasurement& point) {
+  const double size_m = frame.params.voxel_size_m;
+  const double margin_m = frame.profile != nullptr
+                              ? point.range_m - frame.profile->extent(point, size_m).begin_m
+                              : frame.params.free_margin_sigmas * point.sigma_range_m;
+  return std::max(0.5 * size_m, margin_m);
+}
+
+// The part of this stretch of the ray that lies within the height limits.
+std::optional<Segment> within_heights(const FrameView& frame, const PointMeasurement& point,
+                                      Chord stretch) {
+  const double camera_z_m = frame.T_world_camera.translation.z();
+  const double rise = point.ray_world.z();
+  if (rise != 0.0) {
+    const auto [in_m, out_m] =
+        std::minmax({(frame.min_z_m - camera_z_m) / rise, (frame.max_z_m - camera_z_m) / rise});
+    stretch.begin_m = std::max(stretch.begin_m, in_m);
+    stretch.end_m = std::min(stretch.end_m, out_m);
+  } else if (camera_z_m < frame.min_z_m || camera_z_m > frame.max_z_m) {
+    return std::nullopt;
+  }
+  if (!(stretch.begin_m < stretch.end_m)) return std::nullopt;
+  return Segment{frame.T_world_camera.translation + stretch.begin_m * point.ray_world,
+                 frame.T_world_camera.translation + stretch.end_m * point.ray_world};
+}
+
 }  // namespace
 
 SamplingSteps sampling_steps(const OccupancyParams& params, const RectifiedCamera& camera) {
@@ -76,6 +103,7 @@ FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& cam
           .camera = camera,
           .params = params,
           .steps = sampling_steps(params, camera),
+          .profile = profile_of(params.update),
           .T_world_camera = T_world_camera,
           .T_camera_world = inverse(T_world_camera),
           .stamp_ms = stamp_in_map_ms(stamp_ns, map),
@@ -102,23 +130,30 @@ bool marks_surface(const FrameView& frame, const PointMeasurement& point) {
 }
 
 std::optional<Segment> free_segment(const FrameView& frame, const PointMeasurement& point) {
-  const OccupancyParams& params = frame.params;
-  const double margin_m =
-      std::max(0.5 * params.voxel_size_m, params.free_margin_sigmas * point.sigma_range_m);
-  double begin_m = 0.0, end_m = std::min(point.range_m - margin_m, params.max_clearing_m);
-  const double camera_z_m = frame.T_world_camera.translation.z();
-  const double rise = point.ray_world.z();
-  if (rise != 0.0) {
+  const double end_m = point.range_m - free_margin_m(frame, point);
+  return within_heights(frame, point, {0.0, std::min(end_m, frame.params.max_clearing_m)});
+}
+
+std::optional<Segment> profile_segment(const FrameView& frame, const PointMeasurement& point) {
+  const double begin_m = std::max(0.0, point.range_m - free_margin_m(frame, point));
+  const double end_m = frame.profile->extent(point, frame.params.voxel_size_m).end_m;
+  return within_heights(frame, point, {begin_m, end_m});
+}
+
+Chord chord_in(const FrameView& frame, const Eigen::Vector3d& inverse_ray,
+               const Eigen::Vector3i& voxel) {
+  const double size_m = frame.params.voxel_size_m;
+  const Eigen::Array3d low_m =
+      voxel.cast<double>().array() * size_m - frame.T_world_camera.translation.array();
+  Chord chord{.begin_m = 0.0, .end_m = std::numeric_limits<double>::infinity()};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(inverse_ray[axis])) continue;  // runs along the faces, between them
     const auto [in_m, out_m] =
-        std::minmax({(frame.min_z_m - camera_z_m) / rise, (frame.max_z_m - camera_z_m) / rise});
-    begin_m = std::max(begin_m, in_m);
-    end_m = std::min(end_m, out_m);
-  } else if (camera_z_m < frame.min_z_m || camera_z_m > frame.max_z_m) {
-    return std::nullopt;
+        std::minmax({low_m[axis] * inverse_ray[axis], (low_m[axis] + size_m) * inverse_ray[axis]});
+    chord.begin_m = std::max(chord.begin_m, in_m);
+    chord.end_m = std::min(chord.end_m, out_m);
   }
-  if (!(begin_m < end_m)) return std::nullopt;
-  return Segment{frame.T_world_camera.translation + begin_m * point.ray_world,
-                 frame.T_world_camera.translation + end_m * point.ray_world};
+  return chord;
 }
 
 double expected_points(const FrameView& frame, const Eigen::Vector3i& voxel) {

@@ -29,6 +29,8 @@ struct FrameView {
   const RectifiedCamera& camera;
   const OccupancyParams& params;
   SamplingSteps steps;
+  // Of the update rule; nullptr when surfaces are observed by params.observation.
+  const SurfaceProfile* profile = nullptr;
   SE3 T_world_camera, T_camera_world;
   std::uint32_t stamp_ms = 0;       // since the map's epoch
   double min_z_m = 0, max_z_m = 0;  // height limits in the world
@@ -57,11 +59,19 @@ std::optional<PointMeasurement> measure_pixel(const FrameView& frame, int u, int
 bool marks_surface(const FrameView& frame, const PointMeasurement& point);
 
 // The part of the ray to the point that is known to be free: up to max(r, k_f sigma) before the
-// point, not farther than max_clearing_m, within the height limits.
+// point, or to where the profile begins, not farther than max_clearing_m, within the height limits.
 std::optional<Segment> free_segment(const FrameView& frame, const PointMeasurement& point);
+
+// The part of the ray that the profile speaks of beyond the free one, within the height limits.
+std::optional<Segment> profile_segment(const FrameView& frame, const PointMeasurement& point);
 
 // N_exp of eq. (13): how many measured pixels a face of this voxel would send, seen frontally.
 double expected_points(const FrameView& frame, const Eigen::Vector3i& voxel);
+
+// Where the ray to the point runs inside this voxel, in metres from the camera; end < begin when it
+// misses the voxel. `inverse_ray` holds 1 / ray_world.
+Chord chord_in(const FrameView& frame, const Eigen::Vector3d& inverse_ray,
+               const Eigen::Vector3i& voxel);
 
 // Whether the voxel's centre is within image, depth limits and height limits.
 bool is_in_frustum(const FrameView& frame, const Eigen::Vector3i& voxel);

@@ -5,6 +5,7 @@
 
 #include "stereovox/core/parallel.h"
 #include "stereovox/occupancy/frame_observation.h"
+#include "stereovox/occupancy/frame_visibility.h"
 #include "stereovox/occupancy/voxel_update.h"
 
 namespace stereovox {
@@ -102,13 +103,38 @@ class AgeFactor {
   double factor_;
 };
 
+// A frame and the blocks that it changes.
+struct FrameChange {
+  const FrameView& frame;
+  const FrameObservation& observation;
+  // By number in the observation; nullptr when nothing is observed.
+  std::vector<VoxelBlock*> blocks;
+  int threads = 1;
+};
+
+std::vector<VoxelBlock*> blocks_of(const FrameObservation& observation, VoxelMap& map) {
+  std::vector<VoxelBlock*> blocks;
+  for (const BlockObservation& seen : observation.blocks)
+    blocks.push_back(seen.observed.is_empty() ? nullptr : &map.find_or_create_block(seen.index));
+  return blocks;
+}
+
+// Calls update(number, seen, block) for each block, on threads.
+template <class Update>
+void for_each_block(const FrameChange& change, Update update) {
+  parallel_for(0, static_cast<int>(change.blocks.size()), change.threads, [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (change.blocks[at] != nullptr) update(at, change.observation.blocks[at], *change.blocks[at]);
+  });
+}
+
 // Step 5 for one block, in two passes over the frame: all O_t were there before any H is asked for.
-template <class Rule>
-void update_block(const Rule& rule, const FrameView& frame, const FrameObservation& observation,
-                  std::span<const int> neighbours, std::uint32_t frames_before,
-                  const BlockObservation& seen, VoxelBlock& block) {
-  const OccupancyParams& params = frame.params;
-  const PaddedObservations padded(observation, seen);
+template <WeighingRule Rule>
+void update_block(const Rule& rule, const FrameChange& change, std::span<const int> neighbours,
+                  std::uint32_t frames_before, const BlockObservation& seen, VoxelBlock& block) {
+  const OccupancyParams& params = change.frame.params;
+  const std::uint32_t stamp_ms = change.frame.stamp_ms;
+  const PaddedObservations padded(change.observation, seen);
   AgeFactor<Rule> age_factor(rule);
   for_each_in(seen.observed, [&](int i) {
     Voxel& voxel = block.voxels[static_cast<std::size_t>(i)];
@@ -116,17 +142,40 @@ void update_block(const Rule& rule, const FrameView& frame, const FrameObservati
         padded.is_uniform() ? 0.0 : padded.heterogeneity_at(i, params.homogeneity, neighbours);
     const double k = rule.credibility({.prior_observations = voxel.observations,
                                        .homogeneity = homogeneity(params.homogeneity, H),
-                                       .age_factor = age_factor.of(voxel, frame.stamp_ms),
+                                       .age_factor = age_factor.of(voxel, stamp_ms),
                                        .frames_before = frames_before});
-    update_voxel(seen.value_at(i), k, params.initial_state, frame.stamp_ms, voxel);
+    update_voxel(seen.value_at(i), k, params.initial_state, stamp_ms, voxel);
   });
 }
 
-std::vector<VoxelBlock*> blocks_of(const FrameObservation& observation, VoxelMap& map) {
-  std::vector<VoxelBlock*> blocks;
-  for (const BlockObservation& seen : observation.blocks)
-    blocks.push_back(seen.observed.is_empty() ? nullptr : &map.find_or_create_block(seen.index));
-  return blocks;
+template <WeighingRule Rule>
+void update_map(const Rule& rule, const FrameChange& change, const VoxelMap& map) {
+  const std::vector<int> neighbours = padded_steps(change.frame.params.homogeneity.neighbours);
+  for_each_block(change, [&](std::size_t, const BlockObservation& seen, VoxelBlock& block) {
+    update_block(rule, change, neighbours, map.frames_integrated, seen, block);
+  });
+}
+
+template <AddingRule Rule>
+void update_map(const Rule& rule, const FrameChange& change, const VoxelMap&) {
+  for_each_block(change, [&](std::size_t, const BlockObservation& seen, VoxelBlock& block) {
+    for_each_in(seen.observed, [&](int i) {
+      Voxel& voxel = block.voxels[static_cast<std::size_t>(i)];
+      store(rule.after(belief_of(voxel), seen.value_at(i)), change.frame.stamp_ms, voxel);
+    });
+  });
+}
+
+void update_map(const VisibilityRule& rule, const FrameChange& change, const VoxelMap& map) {
+  const auto visibility =
+      frame_visibility(rule, change.frame, change.observation, map, change.threads);
+  for_each_block(change, [&](std::size_t number, const BlockObservation& seen, VoxelBlock& block) {
+    for_each_in(seen.observed, [&](int i) {
+      const auto at = static_cast<std::size_t>(i);
+      update_voxel(rule, seen.value_at(i), static_cast<double>(visibility[number][at]),
+                   change.frame.stamp_ms, block.voxels[at]);
+    });
+  });
 }
 
 FrameUpdate summary_of(const FrameObservation& observation) {
@@ -150,17 +199,11 @@ FrameUpdate integrate(const DisparityImage& disparity, const RectifiedCamera& ca
                       const OccupancyParams& params, int threads, VoxelMap& map) {
   const FrameView frame = view_frame(disparity, camera, T_world_camera, stamp_ns, params, map);
   const FrameObservation observation = observe_frame(frame, map, threads);
-  const std::vector<VoxelBlock*> blocks = blocks_of(observation, map);
-  const std::vector<int> neighbours = padded_steps(params.homogeneity.neighbours);
-  const auto update_all = [&](const auto& rule) {
-    parallel_for(0, static_cast<int>(blocks.size()), threads, [&](int i) {
-      const auto at = static_cast<std::size_t>(i);
-      if (blocks[at] != nullptr)
-        update_block(rule, frame, observation, neighbours, map.frames_integrated,
-                     observation.blocks[at], *blocks[at]);
-    });
-  };
-  std::visit(update_all, params.update);
+  const FrameChange change{.frame = frame,
+                           .observation = observation,
+                           .blocks = blocks_of(observation, map),
+                           .threads = threads};
+  std::visit([&](const auto& rule) { update_map(rule, change, map); }, params.update);
   ++map.frames_integrated;
   return summary_of(observation);
 }

@@ -3,8 +3,8 @@
 #include <map>
 #include <set>
 
-#include "stereovox/occupancy/frame_observation.h"
-#include "stereovox/occupancy/voxel_ray.h"
+#include "stereovox/occupancy/frame_evidence.h"
+#include "stereovox/occupancy/frame_visibility.h"
 #include "stereovox/occupancy/voxel_update.h"
 
 namespace stereovox {
@@ -33,6 +33,12 @@ PerVoxel<VoxelEvidence> gather_evidence(const FrameView& frame,
   const double size_m = frame.params.voxel_size_m;
   PerVoxel<VoxelEvidence> evidence;
   for (const PointMeasurement& point : points) {
+    if (frame.profile != nullptr) {
+      for_each_profiled_voxel(
+          *frame.profile, frame, point,
+          [&](const Eigen::Vector3i& voxel, float value) { evidence[voxel].add(value, false); });
+      continue;
+    }
     const Eigen::Vector3i own = voxel_index_of(size_m, point.p_world);
     const auto add = [&](const Eigen::Vector3i& voxel, float value) {
       evidence[voxel].add(value, voxel == own);
@@ -41,14 +47,6 @@ PerVoxel<VoxelEvidence> gather_evidence(const FrameView& frame,
                frame.params.observation);
   }
   return evidence;
-}
-
-float join(const FrameView& frame, const Eigen::Vector3i& voxel, const VoxelEvidence& evidence) {
-  return std::visit(
-      [&](const auto& union_rule, const auto& density) {
-        return observation_of(evidence, expected_points(frame, voxel), union_rule, density);
-      },
-      frame.params.union_rule, frame.params.density);
 }
 
 VoxelSet voxels_on_rays(const FrameView& frame) {
@@ -91,27 +89,91 @@ double heterogeneity_of(const Eigen::Vector3i& voxel, const PerVoxel<float>& obs
   return heterogeneity(params, observations.at(voxel), neighbours);
 }
 
-double credibility_of(const Voxel& voxel, double heterogeneity, const FrameView& frame,
-                      std::uint32_t frames_before) {
-  return std::visit(
-      [&](const auto& rule) {
-        return rule.credibility(
-            {.prior_observations = voxel.observations,
-             .homogeneity = homogeneity(frame.params.homogeneity, heterogeneity),
-             .age_factor = is_known(voxel) ? rule.age_factor(age_s(voxel, frame.stamp_ms)) : 1.0,
-             .frames_before = frames_before});
-      },
-      frame.params.update);
+// Adds the voxels that points speak for to `observations`, which holds the crossed ones as 0;
+// returns those that are hit.
+std::vector<Eigen::Vector3i> join_points(const FrameView& frame,
+                                         const PerVoxel<VoxelEvidence>& evidence,
+                                         PerVoxel<float>& observations) {
+  std::vector<Eigen::Vector3i> hits;
+  with_observation(frame, [&](auto observation) {
+    for (const auto& [voxel, of_voxel] : evidence) {
+      const bool is_crossed = observations.contains(voxel);
+      const float value = observation(of_voxel, expected_points(frame, voxel), is_crossed);
+      if (value == kNothingSaid) continue;
+      observations[voxel] = value;
+      if (value > min_hit_observation(frame)) hits.push_back(voxel);
+    }
+  });
+  return hits;
 }
 
-void update_map(const FrameView& frame, const PerVoxel<float>& observations, VoxelMap& map) {
+Voxel& voxel_of(VoxelMap& map, const Eigen::Vector3i& index) {
+  return map.find_or_create_block(block_of(index))
+      .voxels[static_cast<std::size_t>(position_in_block(index))];
+}
+
+template <WeighingRule Rule>
+void update_map(const Rule& rule, const FrameView& frame, const PerVoxel<float>& observations,
+                VoxelMap& map) {
   for (const auto& [index, observation] : observations) {
     const double H = heterogeneity_of(index, observations, frame.params.homogeneity);
-    Voxel& voxel = map.find_or_create_block(block_of(index))
-                       .voxels[static_cast<std::size_t>(position_in_block(index))];
-    const double k = credibility_of(voxel, H, frame, map.frames_integrated);
+    Voxel& voxel = voxel_of(map, index);
+    const double age_factor = is_known(voxel) ? rule.age_factor(age_s(voxel, frame.stamp_ms)) : 1.0;
+    const double k = rule.credibility({.prior_observations = voxel.observations,
+                                       .homogeneity = homogeneity(frame.params.homogeneity, H),
+                                       .age_factor = age_factor,
+                                       .frames_before = map.frames_integrated});
     update_voxel(observation, k, frame.params.initial_state, frame.stamp_ms, voxel);
   }
+}
+
+template <AddingRule Rule>
+void update_map(const Rule& rule, const FrameView& frame, const PerVoxel<float>& observations,
+                VoxelMap& map) {
+  for (const auto& [index, observation] : observations) {
+    Voxel& voxel = voxel_of(map, index);
+    store(rule.after(belief_of(voxel), observation), frame.stamp_ms, voxel);
+  }
+}
+
+// P(V) of one voxel when that of the one before it is known.
+double visibility_of(const VisibilityRule& rule, const FrameView& frame, const VoxelMap& map,
+                     const Eigen::Vector3i& voxel, const PerVoxel<float>& nearer) {
+  const Eigen::Vector3i camera =
+      voxel_index_of(frame.params.voxel_size_m, frame.T_world_camera.translation);
+  if (voxel == camera) return 1.0;
+  double hidden = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Vector3i facing = voxel;
+    facing[axis] += (camera[axis] > voxel[axis]) - (camera[axis] < voxel[axis]);
+    if (facing != voxel) hidden = std::min(hidden, rule.occupancy(map.at(facing)));
+  }
+  const int axis = entry_axis(frame, voxel, camera - voxel);
+  Eigen::Vector3i before = voxel;
+  before[axis] += camera[axis] > voxel[axis] ? 1 : -1;
+  const auto found = nearer.find(before);
+  return rule.visibility(found == nearer.end() ? 1.0 : static_cast<double>(found->second), hidden);
+}
+
+PerVoxel<float> visibilities(const VisibilityRule& rule, const FrameView& frame,
+                             const PerVoxel<float>& observations, const VoxelMap& map) {
+  const Eigen::Vector3i camera =
+      voxel_index_of(frame.params.voxel_size_m, frame.T_world_camera.translation);
+  std::multimap<int, Eigen::Vector3i> outward;
+  for (const auto& [voxel, observation] : observations)
+    outward.emplace((voxel - camera).cwiseAbs().sum(), voxel);
+  PerVoxel<float> visibility;
+  for (const auto& [steps, voxel] : outward)
+    visibility[voxel] = static_cast<float>(visibility_of(rule, frame, map, voxel, visibility));
+  return visibility;
+}
+
+void update_map(const VisibilityRule& rule, const FrameView& frame,
+                const PerVoxel<float>& observations, VoxelMap& map) {
+  const PerVoxel<float> visibility = visibilities(rule, frame, observations, map);
+  for (const auto& [index, observation] : observations)
+    update_voxel(rule, observation, static_cast<double>(visibility.at(index)), frame.stamp_ms,
+                 voxel_of(map, index));
 }
 
 }  // namespace
@@ -126,13 +188,8 @@ FrameUpdate integrate_reference(const DisparityImage& disparity, const Rectified
   for (const Eigen::Vector3i& voxel : observed_besides_hits(frame, map)) observations[voxel] = 0.0F;
   FrameUpdate update;
   update.points_used = static_cast<int>(points.size());
-  for (const auto& [voxel, evidence] : gather_evidence(frame, points)) {
-    const float observation = join(frame, voxel, evidence);
-    if (observation <= kMinHitObservation) continue;
-    observations[voxel] = observation;
-    update.hits.push_back(voxel);
-  }
-  update_map(frame, observations, map);
+  update.hits = join_points(frame, gather_evidence(frame, points), observations);
+  std::visit([&](const auto& rule) { update_map(rule, frame, observations, map); }, params.update);
   ++map.frames_integrated;
   update.hit_voxels = static_cast<int>(update.hits.size());
   update.free_voxels = static_cast<int>(observations.size()) - update.hit_voxels;

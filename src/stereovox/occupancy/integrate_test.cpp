@@ -63,12 +63,26 @@ const std::vector<Settings> kFurtherChoices = {
     {{"union.type", "rank"}, {"union.quantile", "0.5"}, {"valid_fraction", "0.7"}},
     {{"update.type", "saturating"}, {"update.age_mode", "prior_decay"}},
     {{"observation.type", "euclid_continuous"}, {"observation.distance_error", "printed"}},
+    {{"update.type", "continuous_log_odds"}, {"union.type", "max"}, {"pixel_step", "3"}},
+    {{"update.type", "continuous_log_odds"}, {"update.min_sigma_half_voxels", "0"}},
+    {{"update.type", "visibility"}, {"update.unknown_occupancy", "0.02"}},
+    {{"update.type", "dempster_shafer"}, {"update.conflict", "yager"}},
 };
 
 std::string text_of(const Settings& settings) {
   std::string text;
   for (const auto& [path, value] : settings) text += path + "=" + value + " ";
   return text;
+}
+
+// The rules that do not weigh by eq. (16).
+constexpr const char* kBeliefRules[] = {"log_odds", "continuous_log_odds", "visibility",
+                                        "dempster_shafer"};
+
+OccupancyParams params_with(const char* rule) {
+  OccupancyParams params = scene::params(OccupancyPreset::corrected);
+  apply_settings({{"update.type", rule}}, params);
+  return params;
 }
 
 TEST(Integrate, EqualsTheReferenceBitByBitOnADriveWithEveryChoice) {
@@ -104,6 +118,25 @@ TEST(Integrate, GivesTheSameMapForAnyNumberOfThreads) {
     const Result one = run(integrate, drive, params, 1);
     for (const int threads : {2, 3, 8}) expect_equal(run(integrate, drive, params, threads), one);
   }
+}
+
+TEST(Integrate, GivesTheSameMapForAnyNumberOfThreadsByEveryUpdateRule) {
+  const auto drive = scene::random_drive(6, 5);
+  for (const char* rule : kBeliefRules) {
+    SCOPED_TRACE(rule);
+    const OccupancyParams params = params_with(rule);
+    expect_equal(run(integrate, drive, params, 3), run(integrate, drive, params, 1));
+  }
+}
+
+TEST(Integrate, EqualsTheReferenceOnManyRandomDrivesByEveryUpdateRule) {
+  for (const char* rule : kBeliefRules)
+    for (unsigned seed = 20; seed < 24; ++seed) {
+      SCOPED_TRACE(rule);
+      const auto drive = scene::random_drive(seed, 8);
+      const OccupancyParams params = params_with(rule);
+      expect_equal(run(integrate, drive, params, 1), run(integrate_reference, drive, params, 1));
+    }
 }
 
 // The voxels along the optical axis of a camera at (0, 0, 1) that looks along +x: '.' free,
@@ -147,6 +180,65 @@ TEST(Integrate, AnObstacleThatWasTakenAwayIsCleared) {
     integrate(scene::wall_at(2.1), scene::camera(), scene::level_pose(), i * scene::kSecond_ns / 5,
               params, 1, map);
   EXPECT_EQ(row_along_x(map), "..........#         ");
+}
+
+TEST(Integrate, AWallIsFoundAndTakenAwayByEveryUpdateRule) {
+  for (const char* rule : kBeliefRules) {
+    SCOPED_TRACE(rule);
+    const OccupancyParams params = params_with(rule);
+    VoxelMap map = watched(scene::wall_at(1.5), 20, params);
+    EXPECT_EQ(row_along_x(map).substr(0, 8), ".......#");
+    EXPECT_EQ(row_along_x(map).substr(9), "           ");
+    for (int i = 20; i < 60; ++i)
+      integrate(scene::wall_at(2.1), scene::camera(), scene::level_pose(),
+                i * scene::kSecond_ns / 5, params, 1, map);
+    EXPECT_EQ(row_along_x(map).substr(0, 11), "..........#");
+    EXPECT_EQ(map.at({5, 0, 5}).observations, 60);
+    EXPECT_EQ(map.at({5, 0, 5}).last_seen_ms, 11800U);
+  }
+}
+
+TEST(Integrate, OnlyDempsterAndShaferKeepIgnorance) {
+  for (const char* rule : kBeliefRules) {
+    SCOPED_TRACE(rule);
+    const VoxelMap map = watched(scene::wall_at(2.1), 3, params_with(rule));
+    const bool keeps = rule == std::string("dempster_shafer");
+    EXPECT_EQ(map.at({5, 0, 5}).ignorance > 0, keeps);
+  }
+}
+
+// A wall before the middle of which stands a small square.
+DisparityImage wall_and_square(double wall_m, double square_m, int side_px) {
+  DisparityImage image = scene::wall_at(wall_m);
+  const int first_px = (side_px - 1) / 2;  // before the pixel next to the optical axis
+  image.disparity_px(cv::Rect(31 - first_px, 23 - first_px, side_px, side_px))
+      .setTo(scene::camera().disparity_px(square_m));
+  return image;
+}
+
+TEST(Integrate, AnOutlierMakesNoObstacleOnAContinuousRay) {
+  OccupancyParams params = params_with("continuous_log_odds");
+  const DisparityImage image = wall_and_square(2.1, 1.3, 1);
+  EXPECT_EQ(row_along_x(watched(image, 20, params)).substr(0, 11), "..........#");
+  params.union_rule = MaxUnion{};
+  EXPECT_EQ(row_along_x(watched(image, 20, params))[6], '#');
+}
+
+TEST(Integrate, ASmallObstacleIsNotErasedByTheContinuousRaysThatPassIt) {
+  const OccupancyParams params = params_with("continuous_log_odds");
+  EXPECT_EQ(row_along_x(watched(wall_and_square(2.1, 1.3, 4), 20, params)).substr(0, 7), "......#");
+}
+
+TEST(Integrate, AContinuousRayMarksTheCoarseVoxelThatHoldsTheSurface) {
+  OccupancyParams params = params_with("continuous_log_odds");
+  params.voxel_size_m = 0.5;
+  params.max_depth_m = 6.0;
+  for (const double depth_m : {1.05, 1.25, 1.4}) {
+    const VoxelMap map = watched(scene::wall_at(depth_m), 10, params);
+    EXPECT_LT(map.at({1, 0, 2}).state, 0.5F) << depth_m;
+    EXPECT_GT(map.at({2, 0, 2}).state, 0.5F) << depth_m;
+  }
+  EXPECT_FALSE(is_known(watched(scene::wall_at(1.05), 10, params).at({3, 0, 2})));
 }
 
 TEST(Integrate, FarMeasurementsOnlyClearSpaceUpToTheLimit) {

@@ -82,6 +82,11 @@ std::span<const std::string> names_of(AgeMode) {
   return names;
 }
 
+std::span<const std::string> names_of(ConflictRule) {
+  static const std::vector<std::string> names = {"dempster", "yager"};
+  return names;
+}
+
 void apply_preset(OccupancyPreset preset, OccupancyParams& params) {
   const OccupancyParams chosen = params_of(preset);
   params.preset = preset;
@@ -104,7 +109,8 @@ void OccupancyParams::describe(ParameterList& list) {
               [this](OccupancyPreset chosen) { apply_preset(chosen, *this); });
   describe_selection(*this, list);
   list.section("error_model", error_model);
-  list.one_of("observation", observation, "eq. (12): evidence of one point for one voxel");
+  list.one_of("observation", observation,
+              "eq. (12): evidence of one point for one voxel; continuous_log_odds has its own");
   list.one_of("union", union_rule, "eq. (13): how the points of a frame are joined");
   list.one_of("density", density, "eq. (13): bonus for the number of points");
   list("valid_fraction", valid_fraction, {0.01, 1}, "share of the pixels that have a disparity");
@@ -112,8 +118,10 @@ void OccupancyParams::describe(ParameterList& list) {
   list("free_margin_sigmas", free_margin_sigmas, {0, 10},
        "rays stop this many standard deviations before the surface, at least half a voxel");
   list.section("homogeneity", homogeneity);
-  list.one_of("update", update, "eq. (16): how much a new observation counts");
-  list("initial_state", initial_state, {0, 1}, "state before the first observation");
+  list.one_of("update", update,
+              "how an observation changes a voxel: weighed by eq. (16), or by another model");
+  list("initial_state", initial_state, {0, 1},
+       "state before the first observation where eq. (16) weighs; other rules begin at 0.5");
 }
 
 }  // namespace stereovox

@@ -72,11 +72,11 @@ void check(const Voxel& voxel) {
 
 }  // namespace
 
-std::string encode_chunk(std::span<const VoxelBlock* const> blocks) {
+std::string encode_chunk(std::span<const VoxelBlock* const> blocks, VoxelFields fields) {
   std::string bytes;
   std::vector<float> states;
   std::vector<std::uint32_t> times_ms;
-  std::vector<std::uint16_t> counts;
+  std::vector<std::uint16_t> counts, ignorances;
   for (const VoxelBlock* const block : blocks)
     for (const int coordinate : block->index) append_number(bytes, coordinate);
   for (const VoxelBlock* const block : blocks) {
@@ -87,16 +87,18 @@ std::string encode_chunk(std::span<const VoxelBlock* const> blocks) {
       states.push_back(voxel.state);
       times_ms.push_back(voxel.last_seen_ms);
       counts.push_back(voxel.observations);
+      ignorances.push_back(voxel.ignorance);
     });
   }
   append_planes(bytes, states);
   append_planes(bytes, times_ms);
   append_planes(bytes, counts);
+  if (fields == VoxelFields::all) append_planes(bytes, ignorances);
   return bytes;
 }
 
-DecodedChunk decode_chunk(std::string_view bytes, int block_count, const VoxelBlock* previous,
-                          VoxelMap& map) {
+DecodedChunk decode_chunk(std::string_view bytes, VoxelFields fields, int block_count,
+                          const VoxelBlock* previous, VoxelMap& map) {
   ByteReader reader(bytes);
   std::vector<VoxelBlock*> blocks;
   for (int i = 0; i < block_count; ++i) {
@@ -107,9 +109,12 @@ DecodedChunk decode_chunk(std::string_view bytes, int block_count, const VoxelBl
   const auto states = take_planes<float>(reader, voxels.size());
   const auto times_ms = take_planes<std::uint32_t>(reader, voxels.size());
   const auto counts = take_planes<std::uint16_t>(reader, voxels.size());
+  const auto ignorances = fields == VoxelFields::all
+                              ? take_planes<std::uint16_t>(reader, voxels.size())
+                              : std::vector<std::uint16_t>(voxels.size(), 0);
   if (!reader.is_at_end()) throw std::runtime_error("bytes are left over");
   for (std::size_t i = 0; i < voxels.size(); ++i) {
-    *voxels[i] = {states[i], times_ms[i], counts[i]};
+    *voxels[i] = {states[i], times_ms[i], counts[i], ignorances[i]};
     check(*voxels[i]);
   }
   return {voxels.size(), previous};

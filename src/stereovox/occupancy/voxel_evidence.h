@@ -12,15 +12,22 @@
 
 namespace stereovox {
 
+// A voxel's observation is left to the rays that crossed it.
+inline constexpr float kNothingSaid = -1.0F;
+
+// Values of a surface profile between these say next to nothing: log-odds of less than 0.04.
+inline constexpr float kMaxFreeProfile = 0.48F, kMinOccupiedProfile = 0.52F;
+
 struct VoxelEvidence {
   static constexpr int kLevels = 32;  // evidence is counted to the nearest of 0, 1/31, ..., 1
 
-  float largest = 0.0F;
+  float largest = 0.0F, smallest = 1.0F;
   std::uint32_t points_inside = 0;
   std::array<std::uint32_t, kLevels> count_of_level{};
 
   void add(float evidence, bool is_inside) {
     largest = std::max(largest, evidence);
+    smallest = std::min(smallest, evidence);
     points_inside += is_inside ? 1 : 0;
     ++count_of_level[static_cast<std::size_t>(std::lround(evidence * (kLevels - 1)))];
   }
@@ -99,6 +106,19 @@ float observation_of(const VoxelEvidence& evidence, double expected_points, cons
                      const Density& density) {
   return static_cast<float>(std::min(1.0, union_rule.strength(evidence, expected_points) +
                                               density.bonus(evidence, expected_points)));
+}
+
+// The same of a surface profile, where 0.5 says nothing: the voxel is as occupied as the union
+// says. When the union has too few points for that it is free, as those that say least against it
+// say, or wholly where rays have crossed it. kNothingSaid when no point speaks against it either.
+template <class Union>
+float profile_observation_of(const VoxelEvidence& evidence, double expected_points, bool is_crossed,
+                             const Union& union_rule) {
+  const auto strength = static_cast<float>(union_rule.strength(evidence, expected_points));
+  if (strength >= kMinOccupiedProfile) return strength;
+  if (is_crossed) return std::min(strength, kMaxFreeProfile);
+  const float least = std::max(strength, evidence.smallest);
+  return least <= kMaxFreeProfile ? least : kNothingSaid;
 }
 
 }  // namespace stereovox

@@ -17,7 +17,9 @@ namespace stereovox {
 namespace {
 
 constexpr std::string_view kMagic = "STEREOVOX-MAP\n";
-constexpr std::uint16_t kVersion = 1;
+// A file has the lowest version that can hold its map, so that older programs read what they can.
+constexpr std::uint16_t kFirstVersion = 1;
+constexpr std::uint16_t kVersionWithIgnorance = 2;
 constexpr std::size_t kMaxAttachmentBytes = std::size_t{64} << 20;
 constexpr int kCompressionLevel = 1;  // higher ones are slower and hardly smaller on byte planes
 
@@ -43,6 +45,10 @@ struct Header {
   }
 };
 
+VoxelFields fields_of(std::uint16_t version) {
+  return version == kVersionWithIgnorance ? VoxelFields::all : VoxelFields::without_ignorance;
+}
+
 // ---- writing
 
 using Blocks = std::vector<const VoxelBlock*>;
@@ -52,6 +58,13 @@ Blocks blocks_to_write(const VoxelMap& map) {
   std::erase_if(blocks,
                 [](const VoxelBlock* b) { return std::ranges::none_of(b->voxels, is_known); });
   return blocks;
+}
+
+std::uint16_t version_for(const Blocks& blocks) {
+  const auto has_ignorance = [](const Voxel& v) { return is_known(v) && v.ignorance > 0; };
+  const bool any = std::ranges::any_of(
+      blocks, [&](const VoxelBlock* b) { return std::ranges::any_of(b->voxels, has_ignorance); });
+  return any ? kVersionWithIgnorance : kFirstVersion;
 }
 
 std::string compress(std::string_view bytes) {
@@ -68,7 +81,8 @@ void write_with_checksum(std::ostream& out, std::string bytes) {
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-void write_header(std::ostream& out, const VoxelMap& map, const Blocks& blocks) {
+void write_header(std::ostream& out, const VoxelMap& map, const Blocks& blocks,
+                  std::uint16_t version) {
   const Header header{.voxel_size_m = map.voxel_size_m(),
                       .floor_z_m = map.floor_z_m(),
                       .has_epoch = map.epoch_ns.has_value(),
@@ -78,7 +92,7 @@ void write_header(std::ostream& out, const VoxelMap& map, const Blocks& blocks) 
                       .known_voxels = map.known_voxel_count(),
                       .attachments = static_cast<std::uint32_t>(map.attachments.size())};
   std::string bytes(kMagic);
-  append_number(bytes, kVersion);
+  append_number(bytes, version);
   Header::each(header, [&](auto value) { append_number(bytes, value); });
   write_with_checksum(out, std::move(bytes));
 }
@@ -171,12 +185,14 @@ class MapReader {
     Header header;
     std::size_t size = 0;
     Header::each(header, [&](auto& value) { size += sizeof(value); });
-    std::string bytes = take(kMagic.size() + sizeof(kVersion));
+    std::string bytes = take(kMagic.size() + sizeof(kFirstVersion));
     if (!bytes.starts_with(kMagic)) fail("is not a stereovox map");
     const auto version =
         ByteReader(std::string_view(bytes).substr(kMagic.size())).number<std::uint16_t>();
-    if (version != kVersion)
-      fail(fmt::format("has format version {}, this program reads version {}", version, kVersion));
+    if (version < kFirstVersion || version > kVersionWithIgnorance)
+      fail(fmt::format("has format version {}, this program reads versions {} to {}", version,
+                       kFirstVersion, kVersionWithIgnorance));
+    fields_ = fields_of(version);
     const std::string fields = take(size);
     check_sum(bytes + fields, "header");
     ByteReader reader(fields);
@@ -225,13 +241,13 @@ class MapReader {
     const VoxelBlock* last = nullptr;
     for (std::uint64_t chunk = 0; map.block_count() < header.blocks; ++chunk) {
       const std::string part = fmt::format("chunk {}", chunk);
-      const Section section = read_section(part, kMaxChunkBytes);
+      const Section section = read_section(part, max_chunk_bytes(fields_));
       const std::uint64_t missing = header.blocks - map.block_count();
       if (section.blocks != std::min<std::uint64_t>(missing, kMaxBlocksPerChunk))
         fail(fmt::format("{} holds {} blocks of {} missing ones", part, section.blocks, missing));
       decode(name_, part, [&] {
         const DecodedChunk decoded =
-            decode_chunk(section.content, static_cast<int>(section.blocks), last, map);
+            decode_chunk(section.content, fields_, static_cast<int>(section.blocks), last, map);
         known += decoded.known_voxels;
         last = decoded.last_block;
       });
@@ -242,18 +258,20 @@ class MapReader {
 
   std::istream& in_;
   const std::string& name_;
+  VoxelFields fields_ = VoxelFields::without_ignorance;
 };
 
 }  // namespace
 
 void write_voxel_map(std::ostream& out, const VoxelMap& map) {
   const Blocks blocks = blocks_to_write(map);
-  write_header(out, map, blocks);
+  const std::uint16_t version = version_for(blocks);
+  write_header(out, map, blocks, version);
   if (!map.attachments.empty()) write_section(out, 0, encode_attachments(map));
   for (std::size_t i = 0; i < blocks.size(); i += kMaxBlocksPerChunk) {
     const std::size_t count = std::min<std::size_t>(kMaxBlocksPerChunk, blocks.size() - i);
     write_section(out, static_cast<std::uint32_t>(count),
-                  encode_chunk(std::span(blocks).subspan(i, count)));
+                  encode_chunk(std::span(blocks).subspan(i, count), fields_of(version)));
   }
 }
 

@@ -1,5 +1,6 @@
 // map.svx: a voxel map with everything it knows, lossless and checked. The bytes are described in
-// docs/formats.md. The same map always gives the same file.
+// docs/formats.md. The same map always gives the same file. Versions 1 and 2 are read; version 2 is
+// written only of a map whose voxels have ignorance.
 #pragma once
 
 #include <filesystem>

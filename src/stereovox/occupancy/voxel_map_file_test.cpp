@@ -29,7 +29,8 @@ VoxelMap random_map(int blocks, unsigned seed = 1) {
         map.find_or_create_block({coordinate(random), coordinate(random), coordinate(random)});
     for (int i = 0; i < 40; ++i)
       block.voxels[std::size_t(position(random))] = {state(random), std::uint32_t(random()),
-                                                     std::uint16_t(1 + random() % 65535)};
+                                                     std::uint16_t(1 + random() % 65535),
+                                                     std::uint16_t(random())};
   }
   return map;
 }
@@ -71,6 +72,7 @@ TEST(VoxelMapFile, KeepsEverything) {
       EXPECT_EQ(same->voxels[i].state, block->voxels[i].state);
       EXPECT_EQ(same->voxels[i].last_seen_ms, block->voxels[i].last_seen_ms);
       EXPECT_EQ(same->voxels[i].observations, block->voxels[i].observations);
+      EXPECT_EQ(same->voxels[i].ignorance, block->voxels[i].ignorance);
     }
   }
 }
@@ -119,10 +121,39 @@ TEST(VoxelMapFile, SaysWhatIsWrong) {
   std::string newer = bytes, damaged = bytes;
   newer[14] = 9;
   damaged.back() = char(damaged.back() ^ 1);
-  EXPECT_EQ(complaint_about(newer), "map.svx: has format version 9, this program reads version 1");
+  EXPECT_EQ(complaint_about(newer),
+            "map.svx: has format version 9, this program reads versions 1 to 2");
   EXPECT_EQ(complaint_about(damaged), "map.svx: chunk 0 is damaged (its checksum does not match)");
   EXPECT_EQ(complaint_about("P5 640 480 255 and so on"), "map.svx: is not a stereovox map");
   EXPECT_EQ(complaint_about(bytes + "x"), "map.svx: bytes follow the end of the map");
+}
+
+VoxelMap without_ignorance(const VoxelMap& map) {
+  VoxelMap plain(map.voxel_size_m(), map.floor_z_m());
+  plain.epoch_ns = map.epoch_ns;
+  plain.frames_integrated = map.frames_integrated;
+  for (const VoxelBlock* const block : map.sorted_blocks()) {
+    VoxelBlock& same = plain.find_or_create_block(block->index);
+    same.voxels = block->voxels;
+    for (Voxel& voxel : same.voxels) voxel.ignorance = 0;
+  }
+  return plain;
+}
+
+TEST(VoxelMapFile, OnlyAMapWithIgnoranceNeedsVersionTwo) {
+  const VoxelMap map = random_map(3);
+  const std::string with = bytes_of(map), without = bytes_of(without_ignorance(map));
+  EXPECT_EQ(with[14], 2);
+  EXPECT_EQ(without[14], 1);
+  EXPECT_LT(without.size(), with.size());
+}
+
+TEST(VoxelMapFile, AMapOfVersionOneIsReadAndHasNoIgnorance) {
+  const VoxelMap plain = without_ignorance(random_map(600));
+  const std::string bytes = bytes_of(plain);
+  const VoxelMap read = map_of(bytes);
+  EXPECT_EQ(read.known_voxel_count(), plain.known_voxel_count());
+  EXPECT_EQ(bytes_of(read), bytes);
 }
 
 // A header with valid checksum, as a hostile writer can make it.
