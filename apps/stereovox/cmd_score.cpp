@@ -1,10 +1,11 @@
-// stereovox score trajectory|disparity TRUTH ESTIMATE: how right.
+// stereovox score trajectory|disparity TRUTH ESTIMATE: how right. Maps: cmd_score_map.cpp.
 #include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cmd_score_map.h"
 #include "command.h"
 #include "stereovox/evaluation/score_report.h"
 #include "stereovox/io/atomic_file.h"
@@ -88,6 +89,8 @@ void add_score(CLI::App& program, Action& action) {
   command->get_subcommand("disparity")
       ->add_option("--mask", disparity->mask, "image, white where pixels count")
       ->type_name("FILE");
+  add_score_map(*command, action);
+  add_score_voxels(*command, action);
 }
 
 }  // namespace stereovox
