@@ -16,8 +16,12 @@ MAY_INCLUDE = {
     "odometry": ["core"],
     "occupancy": ["core", "io"],
     "navmap": ["core", "io", "occupancy"],
+    "baselines": ["core", "io", "navmap"],
     "evaluation": ["core", "io", "occupancy", "navmap"],
+    "simulation": ["core", "io", "dataset"],
     "pipeline": ["core", "io", "dataset", "stereo", "odometry", "occupancy", "navmap"],
+    "experiment": ["core", "io", "dataset", "stereo", "odometry", "occupancy", "navmap", "baselines",
+                   "evaluation", "simulation", "pipeline"],
 }
 MAX_LINES = 500
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')

@@ -1,13 +1,12 @@
 // stereovox run SOURCE -o OUT: images in, maps out.
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
 #include <iostream>
 #include <memory>
 #include <opencv2/core/utility.hpp>
 
 #include "command.h"
+#include "interrupt.h"
 #include "run_display.h"
 #include "stereovox/core/timestamp.h"
 #include "stereovox/io/trajectory_file.h"
@@ -25,15 +24,6 @@ struct RunOptions {
   std::optional<double> camera_height_m, camera_pitch_deg;
   bool overwrite = false, quiet = false, verbose = false, json_progress = false;
 };
-
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
-
-// The first Ctrl-C asks for a stop after saving; the second one ends the program at once.
-void handle_interrupt(int signal) {
-  interrupted = true;
-  std::signal(signal, SIG_DFL);
-}
 
 Settings shorthands(const RunOptions& options) {
   Settings settings = options.source.shorthands();
@@ -119,7 +109,7 @@ void print_summary(const RunOptions& options, const StereoSequence& sequence,
 
 ProgressSink sink_for(RunDisplay& display) {
   return {[&](const Progress& progress) { display.frame_done(progress); },
-          [&](const std::string& text) { display.warn(text); }, [] { return interrupted.load(); }};
+          [&](const std::string& text) { display.warn(text); }, was_interrupted};
 }
 
 ExitCode exit_code(const PipelineConfig& config, const BuildResult& result) {
@@ -144,7 +134,7 @@ ExitCode run(const RunOptions& options) {
 
   // The stages overlap: one core maps while the others match.
   cv::setNumThreads(std::max(1, config.thread_count() - 1));
-  std::signal(SIGINT, handle_interrupt);
+  catch_interrupt();
   RunDisplay display(display_mode(options));
   BuildResult result = build_maps(*sequence, config, poses, sink_for(display));
   display.end();

@@ -4,6 +4,7 @@
 
 #include <iostream>
 
+#include "simulated_source.h"
 #include "stereovox/dataset/read_ahead.h"
 
 namespace stereovox {
@@ -32,7 +33,10 @@ PipelineConfig ConfigOptions::load(const Settings& shorthands) const {
 }
 
 void SourceOptions::add_to(CLI::App& command) {
-  command.add_option("SOURCE", source, "folder of a data set: plain, KITTI odometry or EuRoC/ASL")
+  command
+      .add_option("SOURCE", source,
+                  "folder of a data set (plain, KITTI odometry or EuRoC/ASL), or "
+                  "sim:WORLD.yaml[:DRIVE[:SEED]]")
       ->required();
   command.add_option("--calib", calibration, "calibration to use instead of the data set's")
       ->type_name("FILE");
@@ -57,6 +61,8 @@ std::unique_ptr<StereoSequence> SourceOptions::open(const PipelineConfig& config
   constexpr int kFramesAhead = 4;
   std::optional<std::filesystem::path> override_path;
   if (!calibration.empty()) override_path = calibration;
+  if (is_simulated_source(source))
+    return open_simulated_source(source, config.dataset, config.thread_count());
   auto sequence = open_sequence(source, config.dataset, override_path);
   return config.thread_count() > 1 ? read_ahead(std::move(sequence), kFramesAhead)
                                    : std::move(sequence);

@@ -33,6 +33,8 @@ void add_odometry(CLI::App& program, Action& action);
 void add_navmap(CLI::App& program, Action& action);
 void add_score(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
+void add_simulate(CLI::App& program, Action& action);
+void add_experiment(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 
 // The options that set parameters, the same in each command that has them.

@@ -1,7 +1,10 @@
 #include "stereovox/core/parallel.h"
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include <algorithm>
 
 namespace stereovox {
 
@@ -10,7 +13,8 @@ void parallel_for(int begin, int end, int threads, const std::function<void(int)
     for (int i = begin; i < end; ++i) body(i);
     return;
   }
-  tbb::task_arena arena(threads);
+  // More than there are cores would make oneTBB print a warning.
+  tbb::task_arena arena(std::min(threads, tbb::info::default_concurrency()));
   arena.execute([&] { tbb::parallel_for(begin, end, body); });
 }
 

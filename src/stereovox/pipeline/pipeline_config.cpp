@@ -93,11 +93,14 @@ int PipelineConfig::thread_count() const {
 }
 
 Settings read_settings(const std::filesystem::path& path) {
-  const YAML::Node root = load_yaml(path);
+  return settings_of(load_yaml(path), path.string());
+}
+
+Settings settings_of(const YAML::Node& node, const std::string& source) {
   Settings settings;
-  if (root.IsNull()) return settings;
-  if (!root.IsMap()) throw Error(path.string() + ": is not a map of parameters");
-  collect(root, "", path.string(), settings);
+  if (node.IsNull()) return settings;
+  if (!node.IsMap()) throw Error(source + ": is not a map of parameters");
+  collect(node, "", source, settings);
   return settings;
 }
 

@@ -1,6 +1,8 @@
 // Every parameter of the line from images to maps, and its file form.
 #pragma once
 
+#include <yaml-cpp/node/node.h>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -52,6 +54,9 @@ Settings preset_settings(const std::string& name);
 // The settings of a YAML file: nested maps of scalars, names joined by dots. Throws Error "path:
 // ..." for a file that is no such thing; unknown names are found when they are applied.
 Settings read_settings(const std::filesystem::path& path);
+
+// The settings below a YAML node, named from there; `source` is named in errors.
+Settings settings_of(const YAML::Node& node, const std::string& source);
 
 // "section.field=value"; throws UsageError for anything else.
 Settings parse_settings(const std::vector<std::string>& assignments);
