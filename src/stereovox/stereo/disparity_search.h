@@ -14,7 +14,7 @@ struct DisparitySearch {
   int left_right_tolerance_px = 1;
   int speckle_size_px = 100;
   int speckle_range_px = 2;
-  double sigma_px = 0.25;
+  double sigma_px = 0.2, sigma_noise_gray = 0.4;  // see texture_sigma.h
 
   // OpenCV wants a multiple of 16, and counts sixteenths of a pixel in 16 bits: the ranges below
   // keep the largest disparity under 2048.
@@ -32,7 +32,9 @@ struct DisparitySearch {
          "left and right disparities may differ by this much");
     list("speckle_size_px", speckle_size_px, {0, 100000}, "smaller islands are removed");
     list("speckle_range_px", speckle_range_px, {1, 64}, "largest disparity step inside an island");
-    list("sigma_px", sigma_px, {0.01, 10}, "standard deviation given to every disparity");
+    list("sigma_px", sigma_px, {0.01, 10}, "standard deviation of a disparity on rich texture");
+    list("sigma_noise_gray", sigma_noise_gray, {0, 100},
+         "what adds to it on weak texture, divided by the brightness gradient; 0 = nothing");
   }
 };
 

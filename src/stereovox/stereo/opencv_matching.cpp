@@ -3,6 +3,8 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "stereovox/stereo/texture_sigma.h"
+
 namespace stereovox {
 namespace {
 
@@ -25,6 +27,7 @@ DisparityImage match_with_opencv(const RectifiedPair& pair, cv::StereoMatcher& m
   matcher.compute(extended_left(pair.left, max_disparity_px),
                   extended_left(pair.right, max_disparity_px), sixteenths);
 
+  const cv::Mat1f sigma_px = texture_sigma_px(pair.left, search.sigma_px, search.sigma_noise_gray);
   const cv::Size size = pair.left.pixels.size();
   DisparityImage out{cv::Mat1f(size, 0.0F), cv::Mat1f(size, 0.0F)};
   for (int v = 0; v < size.height; ++v) {
@@ -36,7 +39,7 @@ DisparityImage match_with_opencv(const RectifiedPair& pair, cv::StereoMatcher& m
       if (!is_recorded(pair.valid_left, v, u) || !is_recorded(pair.valid_right, v, u_right))
         continue;
       out.disparity_px(v, u) = disparity_px;
-      out.sigma_px(v, u) = static_cast<float>(search.sigma_px);
+      out.sigma_px(v, u) = sigma_px(v, u);
     }
   }
   return out;
