@@ -7,9 +7,9 @@
 namespace stereovox {
 namespace {
 
-// What a neutral voxel falls to when about four frames see it free. The far side of a wall, where
+// What a neutral voxel falls to when about ten frames see it free. The far side of a wall, where
 // the points' error leaves faint evidence, stays above.
-constexpr double kTunedFreeThreshold = 0.35;
+constexpr double kTunedFreeThreshold = 0.25;
 
 }  // namespace
 
@@ -28,6 +28,11 @@ std::span<const std::string> names_of(LabelRule) {
   return names;
 }
 
+std::span<const std::string> names_of(HiddenCells) {
+  static const std::vector<std::string> names = {"keep", "unknown"};
+  return names;
+}
+
 void NavmapParams::describe(ParameterList& list) {
   list.preset("preset", preset, "the paper as printed, as corrected, or tuned",
               [this](NavmapPreset p) {
@@ -38,6 +43,7 @@ void NavmapParams::describe(ParameterList& list) {
                 free_threshold =
                     p == NavmapPreset::tuned ? kTunedFreeThreshold : NavmapParams{}.free_threshold;
                 label_rule = literal ? LabelRule::as_printed : LabelRule::visible;
+                hidden_cells = p == NavmapPreset::tuned ? HiddenCells::unknown : HiddenCells::keep;
               });
   list("column", column, "which voxels above a cell count: all, or those in the height band");
   list("min_height_m", min_height_m, {-10, 100}, "lower end of the band, above the floor");
@@ -50,6 +56,8 @@ void NavmapParams::describe(ParameterList& list) {
   list("hysteresis", hysteresis, {0, 1},
        "an occupied cell stays so until its state is below threshold by this much");
   list("label_rule", label_rule, "which cells become free");
+  list("hidden_cells", hidden_cells,
+       "free space apart from the robot's, and obstacles that touch no free space");
 }
 
 void validate(const NavmapParams& params) {

@@ -6,8 +6,8 @@
 
 namespace stereovox {
 
-// What sets column, min_observations, free_threshold and label_rule together; what is set after it
-// stays.
+// What sets column, min_observations, free_threshold, label_rule and hidden_cells together; what is
+// set after it stays.
 enum class NavmapPreset {
   literal,    // as the paper prints it
   corrected,  // its errors mended
@@ -30,6 +30,10 @@ enum class LabelRule {
 };
 std::span<const std::string> names_of(LabelRule);
 
+// What becomes of cells that no sight line can have reached (hidden_cells.h).
+enum class HiddenCells { keep, unknown };
+std::span<const std::string> names_of(HiddenCells);
+
 struct NavmapParams {
   NavmapPreset preset = NavmapPreset::corrected;
   ColumnRule column = ColumnRule::band;
@@ -39,6 +43,7 @@ struct NavmapParams {
   double free_threshold = 0.5;
   double hysteresis = 0.0;
   LabelRule label_rule = LabelRule::visible;
+  HiddenCells hidden_cells = HiddenCells::keep;
 
   void describe(ParameterList& list);
 };

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "stereovox/navmap/column_states.h"
+#include "stereovox/navmap/hidden_cells.h"
 
 namespace stereovox {
 namespace {
@@ -64,6 +65,7 @@ OccupancyGrid2D project_to_2d(const VoxelMap& map, const SightLines& sight_lines
     CellLabel& label = grid.labels[grid.position_of(cell - bounds.min)];
     if (label == CellLabel::unknown) label = CellLabel::free;
   });
+  if (params.hidden_cells == HiddenCells::unknown) forget_hidden_cells(grid);
   return grid;
 }
 

@@ -9,8 +9,9 @@ namespace stereovox {
 // A cell is occupied when S(C), the largest state of its column, is above the threshold. It is free
 //   visible:    when S(C) is below free_threshold, or it was on a line of sight;
 //   as_printed: when it was on a line of sight;
-// and is not occupied. All else is unknown. The label depends on the states as they are now, so an
-// occupied cell whose state drops is occupied no longer.
+// and is not occupied. All else is unknown, and hidden cells if the parameters say so. The label
+// depends on the states as they are now, so an occupied cell whose state drops is occupied no
+// longer.
 //
 // The grid holds the known voxels of the column rule and the cells on lines of sight; its origin is
 // a multiple of the cell size. From an empty map comes one unknown cell. Throws Error when the map

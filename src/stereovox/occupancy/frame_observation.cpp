@@ -15,6 +15,7 @@ namespace {
 struct Mark {
   std::uint16_t position = 0;  // in the block
   bool is_inside = false;      // the point lies in this voxel
+  bool is_exact = false;       // its error is small against the voxel
   float evidence = 0.0F;
 };
 
@@ -86,13 +87,15 @@ void mark_surfaces(const Model& model, const FrameView& frame, RowRange rows, Ma
     if (!marks_surface(frame, point)) return;
     ++out.points_used;
     const Eigen::Vector3i own = voxel_index_of(size_m, point.p_world);
-    for_each_observed_voxel(
-        model, point, size_m, [&](const Eigen::Vector3i& voxel, float evidence) {
-          const bool is_inside = voxel == own;
-          if (evidence > 0.0F || is_inside)
-            out.block_with(voxel).marks.push_back(
-                {static_cast<std::uint16_t>(position_in_block(voxel)), is_inside, evidence});
-        });
+    const bool is_exact_point = is_exact(frame, point);
+    for_each_observed_voxel(model, point, size_m,
+                            [&](const Eigen::Vector3i& voxel, float evidence) {
+                              const bool is_inside = voxel == own;
+                              if (evidence > 0.0F || is_inside)
+                                out.block_with(voxel).marks.push_back(
+                                    {static_cast<std::uint16_t>(position_in_block(voxel)),
+                                     is_inside, is_exact_point, evidence});
+                            });
   });
 }
 
@@ -105,7 +108,7 @@ void mark_profiles(const SurfaceProfile& profile, const FrameView& frame, RowRan
     for_each_profiled_voxel(
         profile, frame, point, [&](const Eigen::Vector3i& voxel, float evidence) {
           out.block_with(voxel).marks.push_back(
-              {static_cast<std::uint16_t>(position_in_block(voxel)), false, evidence});
+              {static_cast<std::uint16_t>(position_in_block(voxel)), false, false, evidence});
         });
   });
 }
@@ -181,7 +184,7 @@ class EvidenceTable {
     const float min_hit = min_hit_observation(frame);
     for (const Mark& mark : marked.marks) {
       touched_.set(mark.position);
-      table_[mark.position].add(mark.evidence, mark.is_inside);
+      table_[mark.position].add(mark.evidence, mark.is_inside, mark.is_exact);
     }
     for_each_in(touched_, [&](int i) {
       VoxelEvidence& evidence = table_[static_cast<std::size_t>(i)];

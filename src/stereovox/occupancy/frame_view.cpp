@@ -129,6 +129,10 @@ bool marks_surface(const FrameView& frame, const PointMeasurement& point) {
          point.p_world.z() <= frame.max_z_m;
 }
 
+bool is_exact(const FrameView& frame, const PointMeasurement& point) {
+  return point.sigma_range_m < 0.5 * frame.params.voxel_size_m;
+}
+
 std::optional<Segment> free_segment(const FrameView& frame, const PointMeasurement& point) {
   const double end_m = point.range_m - free_margin_m(frame, point);
   return within_heights(frame, point, {0.0, std::min(end_m, frame.params.max_clearing_m)});

@@ -58,6 +58,10 @@ std::optional<PointMeasurement> measure_pixel(const FrameView& frame, int u, int
 // Whether the point is certain, near and low enough to mark a surface; if not, it only clears.
 bool marks_surface(const FrameView& frame, const PointMeasurement& point);
 
+// Whether the error of the point's range is below half a voxel's edge, so that it mostly lies in
+// the voxel it should.
+bool is_exact(const FrameView& frame, const PointMeasurement& point);
+
 // The part of the ray to the point that is known to be free: up to max(r, k_f sigma) before the
 // point, or to where the profile begins, not farther than max_clearing_m, within the height limits.
 std::optional<Segment> free_segment(const FrameView& frame, const PointMeasurement& point);

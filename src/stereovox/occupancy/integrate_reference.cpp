@@ -41,7 +41,7 @@ PerVoxel<VoxelEvidence> gather_evidence(const FrameView& frame,
     }
     const Eigen::Vector3i own = voxel_index_of(size_m, point.p_world);
     const auto add = [&](const Eigen::Vector3i& voxel, float value) {
-      evidence[voxel].add(value, voxel == own);
+      evidence[voxel].add(value, voxel == own, is_exact(frame, point));
     };
     std::visit([&](const auto& model) { for_each_observed_voxel(model, point, size_m, add); },
                frame.params.observation);

@@ -25,13 +25,17 @@ OccupancyParams literal_params() {
   return p;
 }
 
-// A neutral start needs fewer frames to decide, and surfaces count up to an error of two and
-// a half voxels; rays that end farther before the surface make up for that.
+// A neutral start needs fewer frames to decide; rays that end farther before the surface, and
+// points that must be the majority near a voxel, keep surfaces thin although far points count.
+// Homogeneity is left out: it kept thin things from ever entering the map.
 OccupancyParams tuned_params() {
   OccupancyParams p;
   p.preset = OccupancyPreset::tuned;
-  p.max_sigma_half_voxels = 5.0;
+  p.max_sigma_half_voxels = 4.0;
   p.free_margin_sigmas = 2.0;
+  p.union_rule = RankUnion{.quantile = 0.05, .majority = 0.3};
+  p.homogeneity.min_homogeneity = 1.0;
+  p.update = SaturatingRule{.max_credibility = 0.1};
   p.initial_state = 0.5;
   return p;
 }

@@ -1,12 +1,9 @@
 // Everything that can be chosen in the occupancy stage. Presets name the choices together:
 // `literal` is what the paper prints, `corrected` repairs it, `tuned` has the formulas of
-// `corrected` with parameters for fine voxels seen in few frames. A preset leaves sizes, steps and
+// `corrected` with other numbers, found on one simulated world. A preset leaves sizes, steps and
 // limits alone, but for the surface limit, which the paper does not have.
 //
-// Measured in 5 cm voxels on 200 rendered office frames (30 m at 0.4 m/s, OpenCV SGBM, true
-// poses) in the height band 0.15 to 1.5 m: `corrected` marks 32 % of the visible outlines of
-// obstacles, all within 2 cells of the truth; `tuned` marks 67 %, 99 % of its cells within 2 cells
-// of the truth.
+// docs/experiment.md tells what each choice is worth.
 #pragma once
 
 #include <span>

@@ -76,7 +76,9 @@ TEST(OccupancyParams, TunedHasTheChoicesOfCorrectedAndOtherNumbers) {
   for (std::size_t i = 0; i < a.parameters().size(); ++i)
     if (a.parameters()[i].get() != b.parameters()[i].get())
       different += a.parameters()[i].path + " ";
-  EXPECT_EQ(different, "preset max_sigma_half_voxels free_margin_sigmas initial_state ");
+  EXPECT_EQ(different,
+            "preset max_sigma_half_voxels union.majority free_margin_sigmas "
+            "homogeneity.min_homogeneity update.max_credibility initial_state ");
 }
 
 TEST(OccupancyParams, APresetLeavesSizesAlone) {

@@ -22,13 +22,15 @@ struct VoxelEvidence {
   static constexpr int kLevels = 32;  // evidence is counted to the nearest of 0, 1/31, ..., 1
 
   float largest = 0.0F, smallest = 1.0F;
-  std::uint32_t points_inside = 0;
+  std::uint32_t points_inside = 0, exact_points = 0;
   std::array<std::uint32_t, kLevels> count_of_level{};
 
-  void add(float evidence, bool is_inside) {
+  // `is_exact`: the point's error is small against the voxel.
+  void add(float evidence, bool is_inside, bool is_exact = false) {
     largest = std::max(largest, evidence);
     smallest = std::min(smallest, evidence);
     points_inside += is_inside ? 1 : 0;
+    exact_points += is_exact && evidence > 0.0F ? 1 : 0;
     ++count_of_level[static_cast<std::size_t>(std::lround(evidence * (kLevels - 1)))];
   }
 };
@@ -43,19 +45,25 @@ struct MaxUnion {
 };
 
 // The K-th largest evidence, where K is a share of the points that a full face would send: a few
-// mismatches cannot lift a voxel.
+// mismatches cannot lift a voxel. With `majority`, K is also that share of the exact points that
+// say anything of the voxel. A surface just behind a voxel, whose errors put some points into it,
+// then does not occupy it: most of the points near it lie beyond. A thin thing alone still does.
 struct RankUnion {
   static constexpr const char* kName = "rank";
 
-  double quantile = 0.05;
+  double quantile = 0.05, majority = 0.0;
 
   void describe(ParameterList& list) {
     list("quantile", quantile, {0, 1},
          "share of the pixels of a voxel's face that must agree; 0 = one point is enough");
+    list("majority", majority, {0, 1},
+         "share of the exact points in and around a voxel that must agree; exact is an error of "
+         "less than half a voxel");
   }
 
   double strength(const VoxelEvidence& evidence, double expected_points) const {
-    const double rank = std::max(1.0, std::ceil(quantile * expected_points));
+    const double rank = std::max(
+        {1.0, std::ceil(quantile * expected_points), std::ceil(majority * evidence.exact_points)});
     double seen = 0.0;
     for (int level = VoxelEvidence::kLevels - 1; level > 0; --level) {
       seen += evidence.count_of_level[static_cast<std::size_t>(level)];
