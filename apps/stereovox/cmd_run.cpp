@@ -22,6 +22,7 @@ struct RunOptions {
   ConfigOptions config;
   std::string output, poses, preset;
   std::optional<double> camera_height_m, camera_pitch_deg;
+  std::vector<double> start_pose;
   bool overwrite = false, quiet = false, verbose = false, json_progress = false;
 };
 
@@ -36,6 +37,9 @@ Settings shorthands(const RunOptions& options) {
   };
   set("world.camera_height_m", options.camera_height_m);
   set("world.camera_pitch_deg", options.camera_pitch_deg);
+  constexpr const char* kStart[] = {"world.start_x_m", "world.start_y_m", "world.start_yaw_deg"};
+  for (std::size_t i = 0; i < options.start_pose.size(); ++i)
+    settings.emplace_back(kStart[i], fmt::format("{}", options.start_pose[i]));
   return settings;
 }
 
@@ -164,6 +168,12 @@ void add_run(CLI::App& program, Action& action) {
       ->type_name("METRES");
   command->add_option("--camera-pitch", options->camera_pitch_deg, "positive looking down")
       ->type_name("DEGREES");
+  command
+      ->add_option("--start-pose", options->start_pose,
+                   "where the first camera stands and looks, in metres and degrees")
+      ->type_name("X,Y,YAW")
+      ->delimiter(',')
+      ->expected(3);
   command->add_flag("--overwrite", options->overwrite, "replace the results of an earlier run");
   command->add_flag("-q,--quiet", options->quiet, "print warnings and errors only");
   command->add_flag("-v,--verbose", options->verbose, "print a line for each frame");

@@ -109,7 +109,7 @@ void MapBuilder::place(int id, GrowingSegment& segment) {
                      estimate_ground_plane(located.frame.disparity, rectifier_.camera(),
                                            config_.world.ground_plane)});
   const WorldFrame world = given_poses_ ? world_of_given_poses(views, config_.world)
-                                        : world_of_odometry(views, config_.world);
+                                        : world_of_odometry(views, config_.world, id == 0);
   segment.placed = empty_segment(id, world, config_.occupancy.voxel_size_m);
   for (const Located& located : segment.waiting) map(located, *segment.placed);
   segment.waiting.clear();

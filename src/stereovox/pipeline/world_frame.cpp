@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace stereovox {
 namespace {
@@ -113,6 +114,12 @@ SE3 level_world(const Floor& floor, const SE3& T_segment_camera) {
   return inverse(SE3{Eigen::Quaterniond(R_segment_world).normalized(), below_camera});
 }
 
+SE3 start_pose(const WorldFrameParams& params) {
+  const double yaw_rad = params.start_yaw_deg * std::numbers::pi / 180;
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())),
+          {params.start_x_m, params.start_y_m, 0.0}};
+}
+
 bool is_z_up(std::span<const GroundView> views) {
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   for (const GroundView& view : views)
@@ -127,9 +134,12 @@ std::span<const std::string> names_of(LevelSource) {
   return names;
 }
 
-WorldFrame world_of_odometry(std::span<const GroundView> views, const WorldFrameParams& params) {
+WorldFrame world_of_odometry(std::span<const GroundView> views, const WorldFrameParams& params,
+                             bool is_first_segment) {
   const FoundFloor found = find_floor(views, params);
-  return {level_world(found.floor, views.front().T_segment_camera), 0.0, found.text};
+  const SE3 T_level_segment = level_world(found.floor, views.front().T_segment_camera);
+  const SE3 T_world_level = is_first_segment ? start_pose(params) : SE3{};
+  return {T_world_level * T_level_segment, 0.0, found.text};
 }
 
 WorldFrame world_of_given_poses(std::span<const GroundView> views, const WorldFrameParams& params) {

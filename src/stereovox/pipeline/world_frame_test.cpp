@@ -40,6 +40,21 @@ TEST(WorldFrame, HasItsOriginOnTheFloorBelowTheFirstCameraAndLooksAlongX) {
             "first frames)");
 }
 
+TEST(WorldFrame, BeginsAtTheStartPoseInTheFirstSegmentOnly) {
+  const std::vector<GroundView> views = {{SE3{}, floor_below(0.6, 5.0)}};
+  WorldFrameParams params;
+  params.start_x_m = 3;
+  params.start_y_m = -2;
+  params.start_yaw_deg = 90;
+  const SE3 first = world_of_odometry(views, params).T_world_segment;
+  EXPECT_LT((first * Vector3d::Zero() - Vector3d(3, -2, 0.6)).norm(), 1e-9);
+  const Vector3d ahead = first * Vector3d(0, 0, 1);
+  EXPECT_NEAR(ahead.x(), 3.0, 1e-9);
+  EXPECT_NEAR(ahead.y(), -2 + std::cos(5.0 * kDegree_rad), 1e-9);
+  const SE3 later = world_of_odometry(views, params, false).T_world_segment;
+  EXPECT_LT((later * Vector3d::Zero() - Vector3d(0, 0, 0.6)).norm(), 1e-9);
+}
+
 TEST(WorldFrame, TakesTheFloorThatMostViewsAgreeOn) {
   std::vector<GroundView> views;
   for (int i = 0; i < 4; ++i)
