@@ -1,8 +1,10 @@
 // stereovox simulate WORLD.yaml -o DATASET: a drive through a described world, with its truth.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iostream>
 #include <memory>
+#include <numbers>
 
 #include "command.h"
 #include "interrupt.h"
@@ -55,6 +57,15 @@ void write_ideal_maps(const SimulateOptions& options, const Simulation& simulati
                     ideal_voxel_map(simulation.world(), options.voxel_size_m));
 }
 
+// So that a map of estimated poses can be laid over the ideal one.
+void print_start(const std::string& output, const SE3& T_world_camera) {
+  const Eigen::Vector3d forward = T_world_camera.rotation * Eigen::Vector3d::UnitZ();
+  std::cout << fmt::format(
+      "in the world of the ideal maps: stereovox run {} -o OUT --start-pose {:.4f},{:.4f},{:.3f}\n",
+      output, T_world_camera.translation.x(), T_world_camera.translation.y(),
+      std::atan2(forward.y(), forward.x()) * 180 / std::numbers::pi);
+}
+
 ExitCode run(const SimulateOptions& options) {
   World world = read_world(options.world);
   const std::string drive = options.drive.empty() ? default_drive(world) : options.drive;
@@ -71,6 +82,7 @@ ExitCode run(const SimulateOptions& options) {
   if (!options.quiet)
     std::cout << fmt::format("{}: {} pairs of drive '{}', {:.1f} m\n", options.output, frames,
                              drive, path_length_m(simulation.trajectory()));
+  if (!options.quiet) print_start(options.output, simulation.trajectory().front().T_world_camera);
   return was_interrupted() ? ExitCode::interrupted : ExitCode::ok;
 }
 

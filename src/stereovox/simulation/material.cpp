@@ -161,10 +161,10 @@ double albedo_at(const Material& material, const Eigen::Vector3d& p_m,
 std::vector<Material> common_materials() {
   using enum Pattern;
   return {
-      {.name = "plaster", .albedo = 0.62, .contrast = 0.045, .scale_m = 0.6, .persistence = 0.75},
-      {.name = "paint", .albedo = 0.68, .contrast = 0.018, .scale_m = 0.8, .persistence = 0.7},
-      {.name = "carpet", .albedo = 0.34, .contrast = 0.16, .scale_m = 0.3, .persistence = 0.9},
-      {.name = "concrete", .albedo = 0.45, .contrast = 0.12, .scale_m = 1.0, .persistence = 0.75},
+      {.name = "plaster", .albedo = 0.62, .contrast = 0.08, .scale_m = 0.3, .persistence = 0.9},
+      {.name = "paint", .albedo = 0.68, .contrast = 0.03, .scale_m = 0.5, .persistence = 0.8},
+      {.name = "carpet", .albedo = 0.34, .contrast = 0.25, .scale_m = 0.15, .persistence = 0.95},
+      {.name = "concrete", .albedo = 0.45, .contrast = 0.16, .scale_m = 0.5, .persistence = 0.85},
       {.name = "ceiling",
        .albedo = 0.75,
        .contrast = 0.05,
@@ -206,7 +206,7 @@ std::vector<Material> common_materials() {
        .pattern = bricks,
        .pattern_size_m = 0.24,
        .pattern_contrast = 0.35},
-      {.name = "wood", .albedo = 0.36, .contrast = 0.16, .scale_m = 0.4, .persistence = 0.8},
+      {.name = "wood", .albedo = 0.36, .contrast = 0.2, .scale_m = 0.3, .persistence = 0.85},
       {.name = "veneer", .albedo = 0.52, .contrast = 0.06, .scale_m = 0.5, .persistence = 0.8},
       {.name = "fabric", .albedo = 0.30, .contrast = 0.14, .scale_m = 0.15, .persistence = 0.9},
       {.name = "cardboard",

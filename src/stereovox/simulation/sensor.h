@@ -11,11 +11,11 @@ namespace stereovox {
 
 struct SensorParams {
   double blur_px = 0.5;
-  double vignetting = 0.25;
+  double vignetting = 0.15;
   double mean_gray = 105.0;
   double gain_difference = 0.03;
-  double full_well_electrons = 9000.0;
-  double read_noise_gray = 0.8;
+  double full_well_electrons = 20000.0;
+  double read_noise_gray = 0.6;
 
   void describe(ParameterList& list);
 };

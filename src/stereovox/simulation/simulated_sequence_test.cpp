@@ -6,6 +6,7 @@
 
 #include "stereovox/core/error.h"
 #include "stereovox/dataset/open_sequence.h"
+#include "stereovox/io/file_bytes.h"
 #include "stereovox/io/pfm.h"
 #include "stereovox/io/temporary_folder.h"
 #include "stereovox/simulation/room_for_test.h"
@@ -90,6 +91,14 @@ TEST(SimulatedSequence, TruthFitsTogether) {
   const double fb = 50 * 0.12;
   EXPECT_NEAR(truth.disparity_px(10, 30) * truth.depth_m(10, 30), fb, 1e-4);
   EXPECT_EQ(truth.occluded.size(), truth.depth_m.size());
+}
+
+TEST(SimulationParams, AreAllOnTheReferencePage) {
+  const std::string page = read_file(STEREOVOX_SOURCE_DIR "/docs/simulation.md", 1 << 20);
+  SimulationParams params;
+  const ParameterList list = parameters_of(params);
+  for (const Parameter& parameter : list.parameters())
+    EXPECT_THAT(page, testing::HasSubstr("`" + parameter.path + "`"));
 }
 
 class WrittenDataSet : public testing::Test {

@@ -7,16 +7,14 @@
 #include <numbers>
 
 #include "stereovox/core/error.h"
-#include "stereovox/core/nearest_name.h"
 #include "stereovox/io/file_bytes.h"
 #include "stereovox/io/yaml_fields.h"
-#include "stereovox/simulation/furniture.h"
+#include "stereovox/simulation/thing_fields.h"
 
 namespace stereovox {
 namespace {
 
 constexpr Range kLength_m{0.001, 500};
-constexpr Range kHeight_m{0, 50};
 constexpr Range kAngle_deg{-3600, 3600};
 constexpr std::uint64_t kMaxWorldBytes = 16ULL << 20;
 
@@ -66,13 +64,7 @@ class WorldReader {
   }
 
   int material(YamlFields& fields, const std::string& key, const std::string& otherwise) {
-    const std::string name = fields.text(key, otherwise);
-    std::vector<std::string> names;
-    for (const Material& m : world_.materials) names.push_back(m.name);
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end())
-      fields.fail(fmt::format("there is no material '{}'{}", name, did_you_mean(name, names)));
-    return static_cast<int>(found - names.begin());
+    return material_field(fields, key, otherwise, world_.materials);
   }
 
   // Floor, ceiling and outer walls; the walls' inner faces are the given rectangle.
@@ -188,47 +180,7 @@ class WorldReader {
     const Eigen::Vector2d step =
         thing.has("step_m") ? thing.point2("step_m") : Eigen::Vector2d(0, 0);
     for (int i = 0; i < count; ++i, at.at_m += step)
-      add(thing.text("name", kind), solids_of_thing(kind, thing, at, i));
-  }
-
-  std::vector<Prism> solids_of_thing(const std::string& kind, YamlFields& thing,
-                                     const Placement& at, int number) {
-    static const std::vector<std::string> kinds = {"box",   "cylinder", "ramp", "table",
-                                                   "chair", "bookcase", "rack", "monitor"};
-    const double bottom = thing.number("bottom_m", kHeight_m, 0.0);
-    const auto seed = static_cast<std::uint32_t>(thing.integer("seed", {0, 1e9}, 1) + number);
-    if (kind == "box")
-      return {box_prism(at, size_of(thing), bottom, material(thing, "material", "wood"))};
-    if (kind == "ramp")
-      return {ramp_prism(at, size_of(thing), bottom, material(thing, "material", "wood"))};
-    if (kind == "cylinder")
-      return {post_prism(at.at_m, thing.number("radius_m", kLength_m),
-                         thing.number("height_m", kLength_m), bottom,
-                         material(thing, "material", "plaster"))};
-    if (kind == "table")
-      return table(at, size_of(thing), thing.number("leg_m", kLength_m, 0.05),
-                   material(thing, "material", "wood"));
-    if (kind == "chair") return chair(at, material(thing, "material", "fabric"));
-    if (kind == "bookcase")
-      return bookcase(at, size_of(thing), thing.integer("boards", {1, 50}, 5),
-                      thing.number("filled", {0, 1}, 0.8), seed,
-                      material(thing, "material", "wood"), material(thing, "content", "books"));
-    if (kind == "rack")
-      return rack(at, size_of(thing), thing.integer("levels", {1, 50}, 3),
-                  thing.integer("bays", {1, 100}, 2), thing.number("filled", {0, 1}, 0.5), seed,
-                  material(thing, "material", "metal"), material(thing, "content", "cardboard"));
-    if (kind == "monitor")
-      return monitor(at, bottom, material(thing, "material", "plastic"),
-                     material(thing, "screen", "screen"));
-    thing.fail(fmt::format("there is no kind '{}'{}", kind, did_you_mean(kind, kinds)));
-  }
-
-  Eigen::Vector3d size_of(YamlFields& thing) {
-    const Eigen::Vector3d size = thing.point3("size_m");
-    if (size.minCoeff() < kLength_m.min || size.maxCoeff() > kLength_m.max)
-      thing.fail(fmt::format("'size_m' is [{}, {}, {}], each must be in [{}, {}]", size.x(),
-                             size.y(), size.z(), kLength_m.min, kLength_m.max));
-    return size;
+      add(thing.text("name", kind), thing_from(thing, at, i, world_.materials));
   }
 
   void add(const std::string& name, std::vector<Prism> solids) {
