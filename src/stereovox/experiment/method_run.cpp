@@ -30,8 +30,9 @@ std::variant<MethodRun::Voxels, OctomapBaseline, MethodRun::Scans> MethodRun::st
                  },
                  [&](OctomapBaselineParams params) -> State {
                    params.voxel_size_m = cell_size_m;
-                   params.min_height_m = band.min_m;
-                   params.max_height_m = band.max_m;
+                   // It takes each voxel that touches its band; ours counts by centres.
+                   params.min_height_m = band.min_m + cell_size_m / 2;
+                   params.max_height_m = band.max_m - cell_size_m / 2;
                    return OctomapBaseline(params);
                  },
                  [](const auto& params) -> State { return Scans{params}; }},
