@@ -91,17 +91,17 @@ bool is_visible(const RectifiedPair& pair, const Eigen::Vector2d& pixel) {
          pair.valid_left(static_cast<int>(pixel.y()), static_cast<int>(pixel.x())) != 0;
 }
 
-std::optional<Observation> sight(const RectifiedCamera& camera, const Keyframe& keyframe,
-                                 const Feature& point, const RectifiedPair& pair,
-                                 const SE3& T_camera_keyframe, const Eigen::Vector3d& expected_px,
+std::optional<Observation> sight(const LevelView& view, const Keyframe& keyframe,
+                                 const Feature& point, const SE3& T_camera_keyframe,
+                                 const Eigen::Vector3d& expected_px,
                                  const AlignmentParams& params) {
-  const Eigen::Matrix2d map = keyframe_from_current(camera, point, T_camera_keyframe);
+  const Eigen::Matrix2d map = keyframe_from_current(view.camera, point, T_camera_keyframe);
   if (!is_moderate(map)) return std::nullopt;
-  const auto patch = cut_patch(keyframe.left.pixels, point.pixel, map);
+  const auto patch = cut_patch(keyframe.levels[view.level].left.pixels, point.pixel, map);
   if (!patch) return std::nullopt;
-  const auto pixels = align_in_both(*patch, pair, expected_px, params);
+  const auto pixels = align_in_both(*patch, view.pair, expected_px, params);
   if (!pixels) return std::nullopt;
-  Observation observation = observation_of(camera, keyframe, point);
+  Observation observation = observation_of(view.camera, keyframe, point);
   observation.pixels = *pixels;
   observation.sigma_px = params.sigma_px;
   return observation;
@@ -109,8 +109,8 @@ std::optional<Observation> sight(const RectifiedCamera& camera, const Keyframe& 
 
 }  // namespace
 
-Keyframe make_keyframe(const RectifiedPair& pair, FeatureSet features,
-                       const AlignmentParams& params) {
+KeyframeLevel make_keyframe_level(const RectifiedPair& pair, FeatureSet features,
+                                  const AlignmentParams& params) {
   for (Feature& point : features.features) {
     const auto patch = cut_patch(pair.left.pixels, point.pixel, Eigen::Matrix2d::Identity());
     if (!patch) continue;
@@ -123,28 +123,26 @@ Keyframe make_keyframe(const RectifiedPair& pair, FeatureSet features,
     point.disparity_px = disparity_px;
     point.sigma_px = std::sqrt(2.0) * params.sigma_px;
   }
-  return {.left = {pair.left.pixels.clone()}, .points = std::move(features)};
+  return {{pair.left.pixels.clone()}, std::move(features)};
 }
 
-SightingSet sight_points(const RectifiedCamera& camera, std::span<const Keyframe* const> keyframes,
-                         const RectifiedPair& pair, const SE3& T_segment_camera,
-                         const AlignmentParams& params) {
-  CellGrid cells(camera.pinhole, params.max_points);
+SightingSet sight_points(const LevelView& view, std::span<const Keyframe* const> keyframes,
+                         const SE3& T_segment_camera, const AlignmentParams& params) {
+  CellGrid cells(view.camera.pinhole, params.max_points);
   SightingSet set;
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     const Keyframe& keyframe = *keyframes[k];
     const SE3 T_camera_keyframe = inverse(T_segment_camera) * keyframe.T_segment_camera;
-    for (std::size_t i = 0; i < keyframe.points.features.size(); ++i) {
-      const Feature& point = keyframe.points.features[i];
-      const Eigen::Vector3d p_camera = T_camera_keyframe * position_of(camera, point);
+    const std::vector<Feature>& points = keyframe.levels[view.level].points.features;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3d p_camera = T_camera_keyframe * position_of(view.camera, points[i]);
       if (p_camera.z() < kMinDepth_m) continue;
-      const Eigen::Vector3d expected_px = project_stereo(camera, p_camera);
-      if (!is_visible(pair, expected_px.head<2>())) continue;
+      const Eigen::Vector3d expected_px = project_stereo(view.camera, p_camera);
+      if (!is_visible(view.pair, expected_px.head<2>())) continue;
       CellState& cell = cells.at(expected_px.head<2>());
       if (cell == CellState::seen) continue;
       set.expected += cell == CellState::untouched ? 1 : 0;
-      const auto seen =
-          sight(camera, keyframe, point, pair, T_camera_keyframe, expected_px, params);
+      const auto seen = sight(view, keyframe, points[i], T_camera_keyframe, expected_px, params);
       cell = seen ? CellState::seen : CellState::tried;
       if (seen) set.sightings.push_back({k, i, *seen});
     }
@@ -152,20 +150,20 @@ SightingSet sight_points(const RectifiedCamera& camera, std::span<const Keyframe
   return set;
 }
 
-std::vector<Observation> sight_matches(const RectifiedCamera& camera, const Keyframe& keyframe,
+std::vector<Observation> sight_matches(const LevelView& view, const Keyframe& keyframe,
                                        std::span<const FeatureMatch> matches,
-                                       const FeatureSet& current, const RectifiedPair& pair,
-                                       const SE3& T_segment_camera, const AlignmentParams& params) {
+                                       const FeatureSet& current, const SE3& T_segment_camera,
+                                       const AlignmentParams& params) {
   const SE3 T_camera_keyframe = inverse(T_segment_camera) * keyframe.T_segment_camera;
+  const std::vector<Feature>& points = keyframe.levels[view.level].points.features;
   std::vector<Observation> observations;
   for (const FeatureMatch& match : matches) {
-    const Feature& point = keyframe.points.features[static_cast<std::size_t>(match.reference)];
+    const Feature& point = points[static_cast<std::size_t>(match.reference)];
     const Feature& corner = current.features[static_cast<std::size_t>(match.current)];
-    if ((T_camera_keyframe * position_of(camera, point)).z() < kMinDepth_m) continue;
+    if ((T_camera_keyframe * position_of(view.camera, point)).z() < kMinDepth_m) continue;
     const Eigen::Vector3d expected_px(corner.pixel.x(), corner.pixel.y(),
                                       corner.pixel.x() - corner.disparity_px);
-    if (const auto seen =
-            sight(camera, keyframe, point, pair, T_camera_keyframe, expected_px, params))
+    if (const auto seen = sight(view, keyframe, point, T_camera_keyframe, expected_px, params))
       observations.push_back(*seen);
   }
   return observations;

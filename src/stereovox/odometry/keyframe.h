@@ -11,11 +11,16 @@
 
 namespace stereovox {
 
+// What a keyframe knows at one level of its images (image_levels.h).
+struct KeyframeLevel {
+  GrayImage left;
+  FeatureSet points;
+};
+
 struct Keyframe {
   int segment = 0;
   SE3 T_segment_camera = {};
-  GrayImage left = {};
-  FeatureSet points = {};
+  std::vector<KeyframeLevel> levels = {};
 };
 
 struct AlignmentParams {
@@ -34,10 +39,10 @@ struct AlignmentParams {
   }
 };
 
-// A keyframe at the origin of its own frame. The disparity of each point is measured again, by
-// aligning its surroundings in the right image; where that fails the matcher's value stays.
-Keyframe make_keyframe(const RectifiedPair& pair, FeatureSet features,
-                       const AlignmentParams& params);
+// The disparity of each point is measured again, by aligning its surroundings in the right image;
+// where that fails the matcher's value stays.
+KeyframeLevel make_keyframe_level(const RectifiedPair& pair, FeatureSet features,
+                                  const AlignmentParams& params);
 
 // The image of point `point` of keyframe `keyframe` (indices) in the current pair. Coordinates of
 // the observation are those of the keyframes' segment.
@@ -51,19 +56,25 @@ struct SightingSet {
   int expected = 0;  // cells of the image in which a point was looked for
 };
 
+// A camera's images at one level, and which one it is.
+struct LevelView {
+  std::size_t level;
+  const RectifiedCamera& camera;
+  const RectifiedPair& pair;
+};
+
 // Looks for the points of keyframes of one segment where they should be if the camera is at
 // `T_segment_camera`: at most one in each cell of the image, the earlier keyframe's before the
 // later's, because a longer memory drifts less.
-SightingSet sight_points(const RectifiedCamera& camera, std::span<const Keyframe* const> keyframes,
-                         const RectifiedPair& pair, const SE3& T_segment_camera,
-                         const AlignmentParams& params);
+SightingSet sight_points(const LevelView& view, std::span<const Keyframe* const> keyframes,
+                         const SE3& T_segment_camera, const AlignmentParams& params);
 
 // Looks for points of one keyframe around the corners of the current frame that match them; the
 // place of the camera shapes the patches only.
-std::vector<Observation> sight_matches(const RectifiedCamera& camera, const Keyframe& keyframe,
+std::vector<Observation> sight_matches(const LevelView& view, const Keyframe& keyframe,
                                        std::span<const FeatureMatch> matches,
-                                       const FeatureSet& current, const RectifiedPair& pair,
-                                       const SE3& T_segment_camera, const AlignmentParams& params);
+                                       const FeatureSet& current, const SE3& T_segment_camera,
+                                       const AlignmentParams& params);
 
 // Improves the disparity of a keyframe's point by one more sighting from a known place.
 void absorb(const RectifiedCamera& camera, const Observation& observation,

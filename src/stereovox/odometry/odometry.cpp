@@ -24,6 +24,11 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
 
+// Of the position, in the direction where it is known least.
+double sigma_m(const MotionEstimate& estimate) {
+  return largest_sigma(estimate.covariance.topLeftCorner<3, 3>());
+}
+
 double median_depth_m(const RectifiedCamera& camera, const FeatureSet& points) {
   std::vector<double> depths;
   for (const Feature& point : points.features) depths.push_back(camera.depth_m(point.disparity_px));
@@ -51,23 +56,40 @@ std::string doubt_about(const MotionEstimate& estimate, int expected,
   if (estimate.rms_px > quality.max_rms_px)
     return fmt::format("reprojection error is {:.2f} px, {} are allowed", estimate.rms_px,
                        quality.max_rms_px);
-  const double sigma_m = largest_sigma(estimate.covariance.topLeftCorner<3, 3>());
+  const double position_m = sigma_m(estimate);
   const double sigma_deg = largest_sigma(estimate.covariance.bottomRightCorner<3, 3>()) * kDegrees;
-  if (!(sigma_m <= quality.max_sigma_m && sigma_deg <= quality.max_sigma_deg))
-    return fmt::format("motion is known to {:.3f} m and {:.2f} deg, {} and {} are needed", sigma_m,
-                       sigma_deg, quality.max_sigma_m, quality.max_sigma_deg);
+  if (!(position_m <= quality.max_sigma_m && sigma_deg <= quality.max_sigma_deg))
+    return fmt::format("motion is known to {:.3f} m and {:.2f} deg, {} and {} are needed",
+                       position_m, sigma_deg, quality.max_sigma_m, quality.max_sigma_deg);
   return "";
 }
 
 }  // namespace
 
+// A pair with its corners, at every level that was asked for.
 struct Odometry::Frame {
-  const RectifiedPair& pair;
-  FeatureSet features;
+  struct Level {
+    PairLevel images;
+    FeatureSet features;
+  };
+
+  const Level& at(std::size_t level) {
+    while (levels.size() <= level) add(halved(levels.back().images));
+    return levels[level];
+  }
+  void add(PairLevel images) {
+    FeatureSet features = extract_features(images.pair, images.disparity, params);
+    levels.push_back({std::move(images), std::move(features)});
+  }
+
+  const FeatureParams& params;
+  std::int64_t stamp_ns;
+  std::deque<Level> levels = {};
 };
 
 // What comparing a frame with keyframes gave; trusted when `doubt` is empty.
 struct Odometry::Attempt {
+  std::size_t level;             // of the images compared
   std::vector<Keyframe*> local;  // of one segment; the last is the reference
   InitialMotion initial = {};
   MotionEstimate estimate = {};  // in the frame of the segment
@@ -75,40 +97,61 @@ struct Odometry::Attempt {
   std::string doubt = "";
 
   Keyframe& reference() const { return *local.back(); }
+  const FeatureSet& reference_points() const { return reference().levels[level].points; }
   bool is_trusted() const { return doubt.empty(); }
 };
 
 Odometry::Odometry(const RectifiedCamera& camera, const OdometryParams& params)
-    : camera_(camera), params_(params) {}
+    : cameras_{camera}, params_(params) {
+  for (int i = 0; i < params.keyframes.coarser_levels; ++i)
+    cameras_.push_back(halved(cameras_.back()));
+}
 
 OdometryResult Odometry::track(const RectifiedPair& pair, const DisparityImage& disparity) {
   check_sizes(pair, disparity);
-  Frame frame{pair, extract_features(pair, disparity, params_.features)};
-  if (keyframes_.empty()) return start(std::move(frame));
+  Frame frame{.params = params_.features, .stamp_ns = pair.stamp_ns};
+  frame.add({pair, disparity});
+  if (keyframes_.empty()) return start(frame);
 
   Attempt attempt = compare(frame, local_keyframes(reference_), predicted_pose(pair.stamp_ns));
-  if (!attempt.is_trusted()) return search(std::move(frame), attempt);
+  if (!attempt.is_trusted()) return search(frame, attempt);
   // The camera may be back where an earlier segment knew its way.
   if (auto earlier = recognise(frame, true, 1)) attempt = std::move(*earlier);
-  return accept(std::move(frame), attempt);
+  return accept(frame, attempt);
 }
 
-OdometryResult Odometry::start(Frame frame) {
-  const auto count = static_cast<int>(frame.features.features.size());
+OdometryResult Odometry::start(Frame& frame) {
+  const int count = corner_count(frame);
   OdometryResult result;
   if (count < params_.quality.min_recognised) {
     result.reason = fmt::format("{} corners have a disparity, {} are needed to start", count,
                                 params_.quality.min_recognised);
     return result;
   }
-  store(make_keyframe(frame.pair, std::move(frame.features), params_.alignment));
-  remember_pose(frame.pair.stamp_ns, SE3{});
+  store(make_keyframe(frame));
+  remember_pose(frame.stamp_ns, SE3{});
   result.status = OdometryStatus::tracked;
   result.is_keyframe = true;
   return result;
 }
 
-OdometryResult Odometry::accept(Frame frame, const Attempt& attempt) {
+// Of the level that has most.
+int Odometry::corner_count(Frame& frame) const {
+  std::size_t most = 0;
+  for (std::size_t level = 0; level < cameras_.size(); ++level)
+    most = std::max(most, frame.at(level).features.features.size());
+  return static_cast<int>(most);
+}
+
+Keyframe Odometry::make_keyframe(Frame& frame) const {
+  Keyframe keyframe;
+  for (std::size_t level = 0; level < cameras_.size(); ++level)
+    keyframe.levels.push_back(make_keyframe_level(frame.at(level).images.pair,
+                                                  frame.at(level).features, params_.alignment));
+  return keyframe;
+}
+
+OdometryResult Odometry::accept(Frame& frame, const Attempt& attempt) {
   const MotionEstimate& estimate = attempt.estimate;
   const SE3& T_segment_camera = estimate.T_reference_camera;
   OdometryResult result{.status = OdometryStatus::tracked,
@@ -119,36 +162,36 @@ OdometryResult Odometry::accept(Frame frame, const Attempt& attempt) {
                         .consistent = attempt.initial.consistent_count(),
                         .expected = attempt.points.expected,
                         .inliers = estimate.inliers,
+                        .level = static_cast<int>(attempt.level),
                         .rms_px = estimate.rms_px,
                         .is_keyframe = needs_keyframe(attempt)};
   for (std::size_t i = 0; i < attempt.points.sightings.size(); ++i) {
     const PointSighting& sighting = attempt.points.sightings[i];
     Keyframe& keyframe = *attempt.local[sighting.keyframe];
     if (estimate.is_inlier[i])
-      absorb(camera_, sighting.observation, T_segment_camera,
-             keyframe.points.features[sighting.point]);
+      absorb(cameras_[attempt.level], sighting.observation, T_segment_camera,
+             keyframe.levels[attempt.level].points.features[sighting.point]);
   }
   reference_ = static_cast<std::size_t>(
       std::ranges::find(keyframes_, &attempt.reference(), [](const Keyframe& k) { return &k; }) -
       keyframes_.begin());
-  remember_pose(frame.pair.stamp_ns, T_segment_camera);
+  remember_pose(frame.stamp_ns, T_segment_camera);
   candidate_.reset();
   if (!result.is_keyframe) return result;
-  Keyframe keyframe = make_keyframe(frame.pair, std::move(frame.features), params_.alignment);
+  Keyframe keyframe = make_keyframe(frame);
   keyframe.segment = result.segment;
   keyframe.T_segment_camera = T_segment_camera;
   store(std::move(keyframe));
   return result;
 }
 
-OdometryResult Odometry::search(Frame frame, const Attempt& failed) {
+OdometryResult Odometry::search(Frame& frame, const Attempt& failed) {
   before_last_.reset();
   if (const auto found = recognise(frame, false, params_.keyframes.attempts_per_frame))
-    return accept(std::move(frame), *found);
-  if (const auto begun = begin_segment(frame)) return accept(std::move(frame), *begun);
+    return accept(frame, *found);
+  if (const auto begun = begin_segment(frame)) return accept(frame, *begun);
   OdometryResult result = lost(failed);
-  if (static_cast<int>(frame.features.features.size()) >= params_.quality.min_recognised)
-    candidate_ = make_keyframe(frame.pair, std::move(frame.features), params_.alignment);
+  if (corner_count(frame) >= params_.quality.min_recognised) candidate_ = make_keyframe(frame);
   return result;
 }
 
@@ -174,37 +217,55 @@ std::optional<SE3> Odometry::predicted_pose(std::int64_t stamp_ns) const {
                      1.0 + gap_s / gap_before_s);
 }
 
-Odometry::Attempt Odometry::compare(const Frame& frame, std::vector<Keyframe*> local,
+// At the finest level when it has plenty of points, else at the level that knows the place best.
+// When none does, the finest tells why.
+Odometry::Attempt Odometry::compare(Frame& frame, const std::vector<Keyframe*>& local,
                                     const std::optional<SE3>& T_segment_predicted) const {
-  Attempt attempt{.local = std::move(local)};
+  Attempt best = compare_at(frame, 0, local, T_segment_predicted);
+  if (best.is_trusted() && best.estimate.inliers >= params_.quality.plenty_inliers) return best;
+  for (std::size_t level = 1; level < cameras_.size(); ++level) {
+    Attempt attempt = compare_at(frame, level, local, T_segment_predicted);
+    if (!attempt.is_trusted()) continue;
+    if (!best.is_trusted() || sigma_m(attempt.estimate) < sigma_m(best.estimate))
+      best = std::move(attempt);
+  }
+  return best;
+}
+
+Odometry::Attempt Odometry::compare_at(Frame& frame, std::size_t level,
+                                       std::vector<Keyframe*> local,
+                                       const std::optional<SE3>& T_segment_predicted) const {
+  Attempt attempt{.level = level, .local = std::move(local)};
   const Keyframe& reference = attempt.reference();
+  const FeatureSet& features = frame.at(level).features;
+  const LevelView view{level, cameras_[level], frame.at(level).images.pair};
   std::optional<SE3> T_reference_predicted;
   if (T_segment_predicted)
     T_reference_predicted = inverse(reference.T_segment_camera) * *T_segment_predicted;
   attempt.initial =
-      find_initial_motion(camera_, reference.points, frame.features, T_reference_predicted,
+      find_initial_motion(view.camera, attempt.reference_points(), features, T_reference_predicted,
                           params_.matching, params_.refinement);
   attempt.doubt = doubt_about(attempt.initial, params_.quality);
   if (!attempt.is_trusted()) return attempt;
 
   // First the matched corners bring the camera near, then all points give its place.
   SE3 place = reference.T_segment_camera * attempt.initial.T_reference_current;
-  const std::vector<Observation> matched =
-      sight_matches(camera_, reference, attempt.initial.consistent, frame.features, frame.pair,
-                    place, params_.alignment);
-  place = refine_motion(camera_, matched, place, params_.refinement).T_reference_camera;
-  attempt.points = sight_points(camera_, attempt.local, frame.pair, place, params_.alignment);
+  const std::vector<Observation> matched = sight_matches(
+      view, reference, attempt.initial.consistent, features, place, params_.alignment);
+  place = refine_motion(view.camera, matched, place, params_.refinement).T_reference_camera;
+  const std::vector<const Keyframe*> keyframes(attempt.local.begin(), attempt.local.end());
+  attempt.points = sight_points(view, keyframes, place, params_.alignment);
   std::vector<Observation> observations;
   for (const PointSighting& s : attempt.points.sightings) observations.push_back(s.observation);
-  attempt.estimate = refine_motion(camera_, observations, place, params_.refinement);
+  attempt.estimate = refine_motion(view.camera, observations, place, params_.refinement);
   attempt.doubt = doubt_about(attempt.estimate, attempt.points.expected, params_.quality);
   if (attempt.is_trusted())
     attempt.doubt =
-        doubt_about_speed(frame, reference.segment, attempt.estimate.T_reference_camera);
+        doubt_about_speed(frame.stamp_ns, reference.segment, attempt.estimate.T_reference_camera);
   return attempt;
 }
 
-std::optional<Odometry::Attempt> Odometry::recognise(const Frame& frame, bool earlier_segments_only,
+std::optional<Odometry::Attempt> Odometry::recognise(Frame& frame, bool earlier_segments_only,
                                                      int attempts) {
   const int segment = keyframes_[reference_].segment;
   for (std::size_t seen = 0; seen < keyframes_.size() && attempts > 0; ++seen) {
@@ -212,7 +273,8 @@ std::optional<Odometry::Attempt> Odometry::recognise(const Frame& frame, bool ea
     const bool is_earlier = keyframes_[next_recognised_].segment < segment;
     if (next_recognised_ == reference_ || (earlier_segments_only && !is_earlier)) continue;
     --attempts;
-    Attempt attempt = compare(frame, local_keyframes(next_recognised_), std::nullopt);
+    // Coarse images of different places look alike.
+    Attempt attempt = compare_at(frame, 0, local_keyframes(next_recognised_), std::nullopt);
     if (attempt.is_trusted() &&
         attempt.initial.consistent_count() >= params_.quality.min_recognised)
       return attempt;
@@ -221,7 +283,7 @@ std::optional<Odometry::Attempt> Odometry::recognise(const Frame& frame, bool ea
 }
 
 // A new segment begins when two lost frames in a row agree on the motion between them.
-std::optional<Odometry::Attempt> Odometry::begin_segment(const Frame& frame) {
+std::optional<Odometry::Attempt> Odometry::begin_segment(Frame& frame) {
   if (!candidate_) return std::nullopt;
   candidate_->segment = segments_;
   Attempt attempt = compare(frame, {&*candidate_}, std::nullopt);
@@ -244,10 +306,10 @@ std::vector<Keyframe*> Odometry::local_keyframes(std::size_t reference) {
   return local;
 }
 
-std::string Odometry::doubt_about_speed(const Frame& frame, int segment,
+std::string Odometry::doubt_about_speed(std::int64_t stamp_ns, int segment,
                                         const SE3& T_segment_camera) const {
   if (!last_ || last_->segment != segment) return "";
-  const double gap_s = seconds_from_ns(frame.pair.stamp_ns - last_->stamp_ns);
+  const double gap_s = seconds_from_ns(stamp_ns - last_->stamp_ns);
   if (gap_s <= 0.0) return "";
   const SE3 motion = inverse(last_->T_segment_camera) * T_segment_camera;
   const double speed = motion.translation.norm() / gap_s;
@@ -262,9 +324,11 @@ bool Odometry::needs_keyframe(const Attempt& attempt) const {
   const KeyframeParams& params = params_.keyframes;
   const Keyframe& reference = attempt.reference();
   const SE3 motion = inverse(reference.T_segment_camera) * attempt.estimate.T_reference_camera;
-  const auto known = static_cast<double>(reference.points.features.size());
+  const FeatureSet& points = attempt.reference_points();
+  const auto known = static_cast<double>(points.features.size());
   return attempt.initial.consistent_count() < params.min_consistent_share * known ||
-         motion.translation.norm() > params.max_shift * median_depth_m(camera_, reference.points) ||
+         motion.translation.norm() >
+             params.max_shift * median_depth_m(cameras_[attempt.level], points) ||
          rotation_angle_rad(motion) * kDegrees > params.max_turn_deg;
 }
 
@@ -287,7 +351,7 @@ void Odometry::remember_pose(std::int64_t stamp_ns, const SE3& T_segment_camera)
 }
 
 void Odometry::check_sizes(const RectifiedPair& pair, const DisparityImage& disparity) const {
-  const cv::Size expected(camera_.pinhole.width, camera_.pinhole.height);
+  const cv::Size expected(cameras_.front().pinhole.width, cameras_.front().pinhole.height);
   const auto check = [&](const char* what, const cv::Size& found) {
     if (found != expected)
       throw Error(fmt::format("odometry: {} is {} x {}, the camera says {} x {}", what, found.width,

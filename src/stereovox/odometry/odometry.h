@@ -16,6 +16,7 @@
 #include <optional>
 #include <string>
 
+#include "stereovox/odometry/image_levels.h"
 #include "stereovox/odometry/initial_motion.h"
 #include "stereovox/odometry/keyframe.h"
 
@@ -28,6 +29,7 @@ struct QualityParams {
   double min_consistent_share = 0.1;
   int min_recognised = 20;
   int min_inliers = 12;
+  int plenty_inliers = 40;
   double min_inlier_share = 0.2;
   double max_rms_px = 1.0;
   double max_sigma_m = 0.1;
@@ -41,6 +43,8 @@ struct QualityParams {
     list("min_recognised", min_recognised, {3, 1000},
          "the same when finding back to an earlier keyframe");
     list("min_inliers", min_inliers, {3, 1000}, "points seen where the refined motion puts them");
+    list("plenty_inliers", plenty_inliers, {3, 1000},
+         "with fewer, halved images may know the place better and are asked as well");
     list("min_inlier_share", min_inlier_share, {0.0, 1.0},
          "their share of the points that should be visible");
     list("max_rms_px", max_rms_px, {0.01, 100.0}, "largest rms reprojection error");
@@ -59,6 +63,7 @@ struct KeyframeParams {
   int local_count = 2;
   int stored_count = 24;
   int attempts_per_frame = 3;
+  int coarser_levels = 2;
 
   void describe(ParameterList& list) {
     list("min_consistent_share", min_consistent_share, {0.0, 1.0},
@@ -70,6 +75,8 @@ struct KeyframeParams {
     list("stored_count", stored_count, {1, 1000}, "keyframes remembered to find back to");
     list("attempts_per_frame", attempts_per_frame, {0, 1000},
          "earlier keyframes that a lost frame is compared with");
+    list("coarser_levels", coarser_levels, {0, 6},
+         "how often images are halved where the finer ones do not give the place");
   }
 };
 
@@ -103,6 +110,7 @@ struct OdometryResult {
   int consistent = 0;  // those that agree on one rigid motion
   int expected = 0;    // points of the local keyframes that should be visible
   int inliers = 0;     // those seen where the refined motion puts them
+  int level = 0;       // how often the images were halved that gave the place
   double rms_px = 0;   // their reprojection error
   bool is_keyframe = false;
   std::string reason = {};  // why lost, with the numbers; empty when tracked
@@ -126,23 +134,28 @@ class Odometry {
   };
 
   void check_sizes(const RectifiedPair& pair, const DisparityImage& disparity) const;
-  OdometryResult start(Frame frame);
-  OdometryResult accept(Frame frame, const Attempt& attempt);
-  OdometryResult search(Frame frame, const Attempt& failed);
+  OdometryResult start(Frame& frame);
+  OdometryResult accept(Frame& frame, const Attempt& attempt);
+  OdometryResult search(Frame& frame, const Attempt& failed);
   OdometryResult lost(const Attempt& attempt) const;
 
   std::optional<SE3> predicted_pose(std::int64_t stamp_ns) const;
-  Attempt compare(const Frame& frame, std::vector<Keyframe*> local,
+  Attempt compare(Frame& frame, const std::vector<Keyframe*>& local,
                   const std::optional<SE3>& T_segment_predicted) const;
-  std::optional<Attempt> recognise(const Frame& frame, bool earlier_segments_only, int attempts);
-  std::optional<Attempt> begin_segment(const Frame& frame);
+  Attempt compare_at(Frame& frame, std::size_t level, std::vector<Keyframe*> local,
+                     const std::optional<SE3>& T_segment_predicted) const;
+  std::optional<Attempt> recognise(Frame& frame, bool earlier_segments_only, int attempts);
+  std::optional<Attempt> begin_segment(Frame& frame);
+  Keyframe make_keyframe(Frame& frame) const;
+  int corner_count(Frame& frame) const;
   std::vector<Keyframe*> local_keyframes(std::size_t reference);
-  std::string doubt_about_speed(const Frame& frame, int segment, const SE3& T_segment_camera) const;
+  std::string doubt_about_speed(std::int64_t stamp_ns, int segment,
+                                const SE3& T_segment_camera) const;
   bool needs_keyframe(const Attempt& attempt) const;
   void store(Keyframe keyframe);
   void remember_pose(std::int64_t stamp_ns, const SE3& T_segment_camera);
 
-  RectifiedCamera camera_;
+  std::vector<RectifiedCamera> cameras_;  // of each level, the full one first
   OdometryParams params_;
   std::deque<Keyframe> keyframes_;  // of all segments, in the order in which they were made
   std::size_t reference_ = 0;       // the keyframe that frames are compared with first
