@@ -10,6 +10,7 @@ namespace {
 // What a neutral voxel falls to when about ten frames see it free. The far side of a wall, where
 // the points' error leaves faint evidence, stays above.
 constexpr double kTunedFreeThreshold = 0.25;
+constexpr double kTunedWallContrast = 0.1;
 
 }  // namespace
 
@@ -43,6 +44,8 @@ void NavmapParams::describe(ParameterList& list) {
                 free_threshold =
                     p == NavmapPreset::tuned ? kTunedFreeThreshold : NavmapParams{}.free_threshold;
                 label_rule = literal ? LabelRule::as_printed : LabelRule::visible;
+                wall_contrast =
+                    p == NavmapPreset::tuned ? kTunedWallContrast : NavmapParams{}.wall_contrast;
                 hidden_cells = p == NavmapPreset::tuned ? HiddenCells::unknown : HiddenCells::keep;
               });
   list("column", column, "which voxels above a cell count: all, or those in the height band");
@@ -56,6 +59,8 @@ void NavmapParams::describe(ParameterList& list) {
   list("hysteresis", hysteresis, {0, 1},
        "an occupied cell stays so until its state is below threshold by this much");
   list("label_rule", label_rule, "which cells become free");
+  list("wall_contrast", wall_contrast, {0, 1},
+       "a cell before an obstacle whose state is higher by more than this is free; 1 = never");
   list("hidden_cells", hidden_cells,
        "free space apart from the robot's, and obstacles that touch no free space");
 }

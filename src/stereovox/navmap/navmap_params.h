@@ -6,8 +6,8 @@
 
 namespace stereovox {
 
-// What sets column, min_observations, free_threshold, label_rule and hidden_cells together; what is
-// set after it stays.
+// What sets column, min_observations, free_threshold, label_rule, wall_contrast and hidden_cells
+// together; what is set after it stays.
 enum class NavmapPreset {
   literal,    // as the paper prints it
   corrected,  // its errors mended
@@ -43,6 +43,7 @@ struct NavmapParams {
   double free_threshold = 0.5;
   double hysteresis = 0.0;
   LabelRule label_rule = LabelRule::visible;
+  double wall_contrast = 1.0;
   HiddenCells hidden_cells = HiddenCells::keep;
 
   void describe(ParameterList& list);

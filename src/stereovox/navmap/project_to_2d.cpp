@@ -4,6 +4,7 @@
 
 #include "stereovox/navmap/column_states.h"
 #include "stereovox/navmap/hidden_cells.h"
+#include "stereovox/navmap/thin_walls.h"
 
 namespace stereovox {
 namespace {
@@ -65,6 +66,7 @@ OccupancyGrid2D project_to_2d(const VoxelMap& map, const SightLines& sight_lines
     CellLabel& label = grid.labels[grid.position_of(cell - bounds.min)];
     if (label == CellLabel::unknown) label = CellLabel::free;
   });
+  if (params.wall_contrast < 1.0) thin_walls(grid, params.wall_contrast);
   if (params.hidden_cells == HiddenCells::unknown) forget_hidden_cells(grid);
   return grid;
 }

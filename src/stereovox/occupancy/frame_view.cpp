@@ -85,10 +85,15 @@ std::optional<Segment> within_heights(const FrameView& frame, const PointMeasure
 }  // namespace
 
 SamplingSteps sampling_steps(const OccupancyParams& params, const RectifiedCamera& camera) {
+  // The edge of a table or a leg is a few pixels wide, however large the voxels are.
+  constexpr int kCoarsestSurface_px = 3;
+  constexpr double kCoarsestRay_px = 3 * kCoarsestSurface_px;
   const double voxel_px = camera.pinhole.fx_px * params.voxel_size_m / params.max_clearing_m;
-  const int ray_px = params.ray_step_px > 0 ? params.ray_step_px
-                                            : std::max(1, static_cast<int>(std::ceil(voxel_px)));
-  return {params.pixel_step > 0 ? params.pixel_step : std::max(1, ray_px / 2), ray_px};
+  const int auto_ray_px =
+      std::max(1, static_cast<int>(std::ceil(std::min(voxel_px, kCoarsestRay_px))));
+  const int ray_px = params.ray_step_px > 0 ? params.ray_step_px : auto_ray_px;
+  const int auto_surface_px = std::clamp(ray_px / 2, 1, kCoarsestSurface_px);
+  return {params.pixel_step > 0 ? params.pixel_step : auto_surface_px, ray_px};
 }
 
 FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& camera,

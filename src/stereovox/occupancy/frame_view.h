@@ -20,7 +20,8 @@ struct SamplingSteps {
 };
 
 // As the parameters say, or where they leave it open (0): rays about one voxel apart at the
-// farthest distance that they clear, and surfaces read twice as densely.
+// farthest distance that they clear, and surfaces read twice as densely, but not so sparsely that
+// thin things are missed.
 SamplingSteps sampling_steps(const OccupancyParams& params, const RectifiedCamera& camera);
 
 // Refers to what it was made from.

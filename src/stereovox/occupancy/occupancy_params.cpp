@@ -33,7 +33,7 @@ OccupancyParams tuned_params() {
   p.preset = OccupancyPreset::tuned;
   p.max_sigma_half_voxels = 4.0;
   p.free_margin_sigmas = 2.0;
-  p.union_rule = RankUnion{.quantile = 0.05, .majority = 0.3};
+  p.union_rule = RankUnion{.quantile = 0.01, .majority = 0.3};
   p.homogeneity.min_homogeneity = 1.0;
   p.update = SaturatingRule{.max_credibility = 0.1};
   p.initial_state = 0.5;
