@@ -311,8 +311,9 @@ class BlockSearch {
 ReachPyramid::ReachPyramid(int width, int height) : width_(width), height_(height) {
   constexpr int kLargest = 1 << (kLevels - 1);
   rows_ = (height + kLargest - 1) / kLargest * kLargest;
-  largest_.resize(static_cast<std::size_t>(rows_ * stride_of(width)));
-  smallest_.resize(largest_.size());
+  const auto cells = [&](int stride) { return static_cast<std::size_t>(rows_ * stride); };
+  largest_ = std::make_unique_for_overwrite<float[]>(cells(stride_of(width)));
+  smallest_ = std::make_unique_for_overwrite<float[]>(cells((width + 1) / 2));
 }
 
 void ReachPyramid::build() {
@@ -322,21 +323,25 @@ void ReachPyramid::build() {
 void ReachPyramid::build_level(int level) {
   const int fine_width = ((width_ - 1) >> (level - 1)) + 1;
   const int fine_height = ((height_ - 1) >> (level - 1)) + 1;
-  const std::vector<float>& fine_smallest = level == 1 ? largest_ : smallest_;
   for (int v = 0; v <= (fine_height - 1) / 2; ++v) {
     const int below = std::min(2 * v + 1, fine_height - 1);
-    const std::size_t upper = place(level - 1, 0, 2 * v), lower = place(level - 1, 0, below);
-    const std::size_t to = place(level, 0, v);
-    const auto join = [&](int u, int right) {
-      const auto a = static_cast<std::size_t>(2 * u), b = static_cast<std::size_t>(right);
-      const auto at = to + static_cast<std::size_t>(u);
-      largest_[at] = std::max(std::max(largest_[upper + a], largest_[upper + b]),
-                              std::max(largest_[lower + a], largest_[lower + b]));
-      smallest_[at] = std::min(std::min(fine_smallest[upper + a], fine_smallest[upper + b]),
-                               std::min(fine_smallest[lower + a], fine_smallest[lower + b]));
+    const auto rows = [&](const float* cells, auto place_in) {
+      return std::array{cells + place_in(level - 1, 2 * v), cells + place_in(level - 1, below)};
     };
-    for (int u = 0; u < fine_width / 2; ++u) join(u, 2 * u + 1);
-    if (fine_width % 2 == 1) join(fine_width / 2, fine_width - 1);
+    const auto in_largest = [&](int at, int row) { return place(at, 0, row); };
+    const auto in_smallest = [&](int at, int row) { return place_of_smallest(at, 0, row); };
+    const auto most = rows(largest_.get(), in_largest);
+    const auto least = level == 1 ? most : rows(smallest_.get(), in_smallest);
+    float* const to_most = largest_.get() + place(level, 0, v);
+    float* const to_least = smallest_.get() + place_of_smallest(level, 0, v);
+    const auto join = [&](int u, int left, int right) {
+      to_most[u] = std::max(std::max(most[0][left], most[0][right]),
+                            std::max(most[1][left], most[1][right]));
+      to_least[u] = std::min(std::min(least[0][left], least[0][right]),
+                             std::min(least[1][left], least[1][right]));
+    };
+    for (int u = 0; u < fine_width / 2; ++u) join(u, 2 * u, 2 * u + 1);
+    if (fine_width % 2 == 1) join(fine_width / 2, fine_width - 1, fine_width - 1);
   }
 }
 
@@ -349,9 +354,8 @@ ReachPyramid::Range ReachPyramid::range_of(int u0, int v0, int u1, int v1) const
   Range range{std::numeric_limits<float>::infinity(), -1.0F};
   for (int v = v0 >> level; v <= v1 >> level; ++v)
     for (int u = u0 >> level; u <= u1 >> level; ++u) {
-      const std::size_t at = place(level, u, v);
-      range.smallest = std::min(range.smallest, smallest_[at]);
-      range.largest = std::max(range.largest, largest_[at]);
+      range.smallest = std::min(range.smallest, smallest_[place_of_smallest(level, u, v)]);
+      range.largest = std::max(range.largest, largest_[place(level, u, v)]);
     }
   return range;
 }

@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "stereovox/occupancy/frame_view.h"
@@ -36,7 +37,7 @@ class ReachPyramid {
   int height() const { return height_; }
   // The square of how far from the camera the near half of a voxel is free, in voxels; negative:
   // nothing is. To be set before build().
-  float* row(int v) { return largest_.data() + place(0, 0, v); }
+  float* row(int v) { return largest_.get() + place(0, 0, v); }
   void build();
 
   struct Range {
@@ -47,7 +48,7 @@ class ReachPyramid {
 
   // Where cell (u, v) of a level is. The samples stand to the left; to their right, the levels from
   // 1 on, one below the other.
-  const float* cells() const { return largest_.data(); }
+  const float* cells() const { return largest_.get(); }
   [[gnu::always_inline]] static int place(int width, int rows, int level, int u, int v) {
     const int above = rows - (2 * rows >> level);
     const int left = level > 0 ? width : 0;
@@ -62,8 +63,14 @@ class ReachPyramid {
   }
   void build_level(int level);
 
+  // The smallest have no samples to the left.
+  std::size_t place_of_smallest(int level, int u, int v) const {
+    const int stride = (width_ + 1) / 2;
+    return static_cast<std::size_t>((rows_ - (2 * rows_ >> level) + v) * stride + u);
+  }
+
   int width_, height_, rows_;  // rows: of the array, a multiple of the largest cell
-  std::vector<float> largest_, smallest_;
+  std::unique_ptr<float[]> largest_, smallest_;
 };
 
 // The frame as seen by voxels: camera and lattice in single precision, lengths in voxels.

@@ -178,6 +178,26 @@ void update_map(const VisibilityRule& rule, const FrameChange& change, const Vox
   });
 }
 
+// Sorts numbers in place of voxels, which is several times faster. A frame is less than 2^21 voxels
+// wide.
+void sort_canonically(std::vector<Eigen::Vector3i>& voxels) {
+  if (voxels.empty()) return;
+  constexpr int kBits = 21, kMask = (1 << kBits) - 1;
+  Eigen::Vector3i low = voxels.front();
+  for (const Eigen::Vector3i& voxel : voxels) low = low.cwiseMin(voxel);
+  std::vector<std::uint64_t> keys;
+  keys.reserve(voxels.size());
+  for (const Eigen::Vector3i& voxel : voxels) {
+    const Eigen::Matrix<std::uint64_t, 3, 1> place = (voxel - low).cast<std::uint64_t>();
+    keys.push_back(place.x() << 2 * kBits | place.y() << kBits | place.z());
+  }
+  std::ranges::sort(keys);
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    voxels[i] = low + Eigen::Vector3i(static_cast<int>(keys[i] >> 2 * kBits),
+                                      static_cast<int>(keys[i] >> kBits & kMask),
+                                      static_cast<int>(keys[i] & kMask));
+}
+
 FrameUpdate summary_of(const FrameObservation& observation) {
   FrameUpdate update;
   update.points_used = observation.points_used;
@@ -186,7 +206,7 @@ FrameUpdate summary_of(const FrameObservation& observation) {
     for (const std::uint64_t word : block.observed.words) observed += std::popcount(word);
     for_each_in(block.hit, [&](int i) { update.hits.push_back(voxel_at(block.index, i)); });
   }
-  std::ranges::sort(update.hits, LatticeOrder{});
+  sort_canonically(update.hits);
   update.hit_voxels = static_cast<int>(update.hits.size());
   update.free_voxels = observed - update.hit_voxels;
   return update;

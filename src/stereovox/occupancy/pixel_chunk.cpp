@@ -35,25 +35,47 @@ ChunkLimits limits_of(const FrameView& frame) {
 
 using Doubles = PixelChunk::PerPixel<double>;
 
+using Floats = PixelChunk::PerPixel<float>;
+
 struct ChunkInput {
+  Floats disparity_px{}, sigma_px{};  // 0 beyond the end of the run
+};
+
+ChunkInput input_of(const DisparityImage& image, const PixelRun& run) {
+  ChunkInput in;
+  const float* const disparities = image.disparity_px[run.v_px] + run.first_u_px;
+  const float* const sigmas = image.sigma_px[run.v_px] + run.first_u_px;
+  if (run.step_px == 1) {
+    std::copy_n(disparities, run.count, in.disparity_px.data());
+    std::copy_n(sigmas, run.count, in.sigma_px.data());
+    return in;
+  }
+  for (int i = 0; i < run.count; ++i) {
+    in.disparity_px[static_cast<std::size_t>(i)] = disparities[i * run.step_px];
+    in.sigma_px[static_cast<std::size_t>(i)] = sigmas[i * run.step_px];
+  }
+  return in;
+}
+
+struct Disparities {
   Doubles disparity_px, error_px;  // 0 where not a measurement
 };
 
-ChunkInput input_of(const MeasuringFrame& frame, const DisparityImage& image, const PixelRun& run) {
+[[gnu::always_inline]] inline void check_pixels(const MeasuringFrame& f, const ChunkInput& in,
+                                                Disparities& out) {
   constexpr float kLargest = std::numeric_limits<float>::max();
-  ChunkInput in{};
-  const float* const disparities = image.disparity_px[run.v_px];
-  const float* const sigmas = image.sigma_px[run.v_px];
-  for (int i = 0; i < run.count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const float disparity_px = disparities[run.first_u_px + i * run.step_px];
-    const float sigma_px = sigmas[run.first_u_px + i * run.step_px];
+  const double min_sigma_px = f.min_sigma_px;
+  for (std::size_t i = 0; i < kSize; ++i) {
+    const float disparity_px = in.disparity_px[i], sigma_px = in.sigma_px[i];
     const bool is_number = (disparity_px > 0.0F) & (disparity_px <= kLargest) & (sigma_px >= 0.0F) &
                            (sigma_px <= kLargest);
-    in.disparity_px[at] = is_number ? static_cast<double>(disparity_px) : 0.0;
-    in.error_px[at] = is_number ? disparity_error_px(frame, static_cast<double>(sigma_px)) : 0.0;
+    const float disparity = is_number ? disparity_px : 0.0F;
+    const double sigma = is_number ? sigma_px : 0.0F;
+    out.disparity_px[i] = disparity;
+    out.error_px[i] = sigma > min_sigma_px ? sigma : min_sigma_px;
   }
-  return in;
+  if (f.is_sigma_a_variance)
+    for (double& error_px : out.error_px) error_px = std::sqrt(error_px);
 }
 
 // What decides over the pixels, as numbers: 1 yes, 0 no.
@@ -62,11 +84,13 @@ struct ChunkAnswers {
 };
 
 // Where nothing is measured the numbers are nonsense until the end, when they are left out.
-[[gnu::always_inline]] inline void measure_pixels(const ChunkLimits& limits, const ChunkInput& in,
-                                                  const PixelRun& run, ChunkAnswers& answers,
-                                                  PixelChunk& out) {
+[[gnu::always_inline]] inline void measure_pixels(const ChunkLimits& limits,
+                                                  const ChunkInput& pixels, const PixelRun& run,
+                                                  ChunkAnswers& answers, PixelChunk& out) {
   const ChunkLimits l = limits;
   const MeasuringFrame& f = l.measuring;
+  Disparities in;
+  check_pixels(f, pixels, in);
   for (int i = 0; i < kSize; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const double u_px = run.first_u_px + i * run.step_px;
@@ -135,6 +159,37 @@ template <AxisModel Model>
   for (std::size_t i = 0; i < kSize; ++i) stored[i] = static_cast<std::uint8_t>(levels[i]);
 }
 
+// How the voxels near a point lie in their blocks.
+[[gnu::always_inline]] inline void find_positions(AxisLevels& out) {
+  constexpr int kInside = kBlockSide - 1;
+  for (std::size_t i = 0; i < kSize; ++i) {
+    const int x = out.first[0][i] & kInside, y = out.first[1][i] & kInside;
+    const int z = out.first[2][i] & kInside;
+    out.first_position[i] = x | y << kBlockSideLog2 | z << 2 * kBlockSideLog2;
+    const bool is_in_one = (x + out.count[0][i] <= kBlockSide) &
+                           (y + out.count[1][i] <= kBlockSide) &
+                           (z + out.count[2][i] <= kBlockSide);
+    out.is_in_one_block[i] = is_in_one ? 1 : 0;
+  }
+}
+
+[[gnu::always_inline]] inline void find_only_ones(AxisLevels& out) {
+  out.only_level.fill(-1);
+  if (out.largest_count[0] == 0) return;
+  const auto& x = out.levels[0][0];
+  const auto& y = out.levels[1][0];
+  const auto& z = out.levels[2][0];
+  for (std::size_t i = 0; i < kSize; ++i) {
+    const bool is_only = (out.count[0][i] == 1) & (out.count[1][i] == 1) & (out.count[2][i] == 1);
+    const int level_xy = x[i] < y[i] ? x[i] : y[i];
+    const int level = level_xy < z[i] ? level_xy : z[i];
+    const bool is_own = (out.first[0][i] == out.own[0][i]) & (out.first[1][i] == out.own[1][i]) &
+                        (out.first[2][i] == out.own[2][i]);
+    out.only_level[i] = is_only ? level : -1;
+    out.is_only_own[i] = is_own ? 1 : 0;
+  }
+}
+
 template <AxisModel Model>
 [[gnu::always_inline]] inline void find_all_levels(const Model& model, const PixelChunk& chunk,
                                                    double size_m, AxisLevels& out) {
@@ -148,6 +203,8 @@ template <AxisModel Model>
       out.levels[k].resize(static_cast<std::size_t>(largest));
     for (int j = 0; j < largest; ++j) find_levels(model, chunk, size_m, k, j, inverse_ramp, out);
   }
+  find_positions(out);
+  find_only_ones(out);
 }
 
 struct MeasurePixels {
@@ -169,7 +226,7 @@ struct FindAllLevels {
 void measure_chunk(const FrameView& frame, const PixelRun& run, PixelChunk& chunk) {
   chunk.count = run.count;
   const ChunkLimits limits = limits_of(frame);
-  const ChunkInput in = input_of(frame.measuring, frame.disparity, run);
+  const ChunkInput in = input_of(frame.disparity, run);
   ChunkAnswers answers;
   on_best_target(MeasurePixels{}, limits, in, run, answers, chunk);
   store(answers, chunk);

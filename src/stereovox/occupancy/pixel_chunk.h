@@ -36,6 +36,11 @@ struct AxisLevels {
   std::array<int, 3> largest_count{};
   std::array<PixelChunk::PerPixel<std::int32_t>, 3> first, count, own;  // own: holds the point
   std::array<std::vector<PixelChunk::PerPixel<std::uint8_t>>, 3> levels;
+  // Where the first of its voxels lies in its block, and whether the others lie in that block too.
+  PixelChunk::PerPixel<std::int32_t> first_position, is_in_one_block;
+  // For a point that speaks for one voxel only: its level as above, and whether it lies in it; -1
+  // for others.
+  PixelChunk::PerPixel<std::int32_t> only_level, is_only_own;
 };
 
 void compute_levels(const MinRampObservation& model, const PixelChunk& chunk, double voxel_size_m,

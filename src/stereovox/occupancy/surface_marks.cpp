@@ -33,46 +33,51 @@ void for_each_block_of(const NearVoxels& near, Visit visit) {
 class PointLevels {
  public:
   PointLevels(const PixelChunk& chunk, const AxisLevels& levels, std::size_t i)
-      : levels_(levels), i_(i), is_exact_(chunk.is_exact[i] != 0) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      begin_[int(k)] = levels.first[k][i];
-      end_[int(k)] = levels.first[k][i] + levels.count[k][i];
+      : levels_(levels), i_(i), is_exact_(chunk.is_exact[i] != 0) {}
+
+  NearVoxels near() const {
+    NearVoxels near;
+    for (int k = 0; k < 3; ++k) {
+      near.begin[k] = first(k);
+      near.end[k] = first(k) + levels_.count[static_cast<std::size_t>(k)][i_];
     }
+    return near;
   }
+  Eigen::Vector3i first_block() const { return block_of({first(0), first(1), first(2)}); }
+  bool is_in_one_block() const { return levels_.is_in_one_block[i_] != 0; }
 
-  NearVoxels near() const { return {begin_, end_}; }
-
-  void mark(const NearVoxels& part, SurfaceMarks<LevelMark>& marks) const {
-    for (int z = part.begin.z(); z < part.end.z(); ++z) {
+  // The part of the voxels that lies in the open block; `position`: of its first voxel.
+  void mark(const NearVoxels& part, int position, SurfaceMarks<LevelMark>& marks) const {
+    for (int z = part.begin.z(); z < part.end.z(); ++z, position += kBlockSide * kBlockSide) {
       const int level_z = level(2, z);
-      for (int y = part.begin.y(); y < part.end.y(); ++y)
-        mark_row(y, z, std::min(level_z, level(1, y)), part, marks);
+      for (int y = part.begin.y(), row = position; y < part.end.y(); ++y, row += kBlockSide)
+        mark_row(y, z, std::min(level_z, level(1, y)), part, row, marks);
     }
   }
 
  private:
-  int level(std::size_t axis, int voxel) const {
-    return levels_.levels[axis][static_cast<std::size_t>(voxel - begin_[int(axis)])][i_];
+  int first(int axis) const { return levels_.first[static_cast<std::size_t>(axis)][i_]; }
+  int level(int axis, int voxel) const {
+    return levels_
+        .levels[static_cast<std::size_t>(axis)][static_cast<std::size_t>(voxel - first(axis))][i_];
   }
-  void mark_row(int y, int z, int level_yz, const NearVoxels& part,
+  void mark_row(int y, int z, int level_yz, const NearVoxels& part, int position,
                 SurfaceMarks<LevelMark>& marks) const {
     const bool is_own_row = y == levels_.own[1][i_] && z == levels_.own[2][i_];
     if (level_yz == 0 && !is_own_row) return;
-    const int row = position_in_block({0, y, z});
-    for (int x = part.begin.x(); x < part.end.x(); ++x) {
+    for (int x = part.begin.x(); x < part.end.x(); ++x, ++position) {
       const int level_here = std::min(level_yz, level(0, x));
       const bool is_inside = is_own_row && x == levels_.own[0][i_];
       if (level_here > 0)
-        marks.add({row | (x & (kBlockSide - 1)), level_here - 1, is_inside, is_exact_});
+        marks.add({position, level_here - 1, is_inside, is_exact_});
       else if (is_inside)
-        marks.add({row | (x & (kBlockSide - 1)), 0, true, false});
+        marks.add({position, 0, true, false});
     }
   }
 
   const AxisLevels& levels_;
   std::size_t i_;
   bool is_exact_;
-  Eigen::Vector3i begin_, end_;
 };
 
 template <class Model>
@@ -120,9 +125,20 @@ void mark_levels(const FrameView& frame, const PixelChunk& chunk, AxisLevels& le
     if (chunk.marks[i] == 0) continue;
     ++marks.points_used;
     const PointLevels point(chunk, levels, i);
+    if (levels.only_level[i] > 0) {
+      marks.open(point.first_block());
+      marks.add({levels.first_position[i], levels.only_level[i] - 1, levels.is_only_own[i] != 0,
+                 chunk.is_exact[i] != 0});
+      continue;
+    }
+    if (point.is_in_one_block()) {
+      marks.open(point.first_block());
+      point.mark(point.near(), levels.first_position[i], marks);
+      continue;
+    }
     for_each_block_of(point.near(), [&](const Eigen::Vector3i& block, const NearVoxels& part) {
       marks.open(block);
-      point.mark(part, marks);
+      point.mark(part, position_in_block(part.begin), marks);
     });
   }
 }

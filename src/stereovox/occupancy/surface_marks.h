@@ -56,22 +56,18 @@ class SurfaceMarks {
 
   // Later marks belong to this block.
   void open(const Eigen::Vector3i& block) {
-    const int number = number_of(block);
-    if (number == open_block_) return;
+    if (open_block_ != BlockIndex::kNone && block == open_place_) return;
     close();
-    open_block_ = number;
+    open_block_ = number_of(block);
+    open_place_ = block;
     run_begin_ = marks_.size();
   }
   void add(const Mark& mark) { marks_.push_back(mark); }
   void close() {
-    if (open_block_ == BlockIndex::kNone || run_begin_ == marks_.size()) return;
-    std::uint32_t& last = last_run_[static_cast<std::size_t>(open_block_)];
-    runs_.push_back(
-        {static_cast<std::uint32_t>(run_begin_), static_cast<std::uint32_t>(marks_.size()), last});
-    last = static_cast<std::uint32_t>(runs_.size() - 1);
+    if (open_block_ == BlockIndex::kNone) return;
+    if (run_begin_ < marks_.size()) end_run();
     open_block_ = BlockIndex::kNone;
   }
-
   const std::vector<Eigen::Vector3i>& blocks() const { return blocks_; }
 
   // Calls visit(mark) for each mark of a block, runs from the last to the first; after close().
@@ -91,6 +87,12 @@ class SurfaceMarks {
     int number = BlockIndex::kNone;
   };
 
+  void end_run() {
+    std::uint32_t& last = last_run_[static_cast<std::size_t>(open_block_)];
+    runs_.push_back(
+        {static_cast<std::uint32_t>(run_begin_), static_cast<std::uint32_t>(marks_.size()), last});
+    last = static_cast<std::uint32_t>(runs_.size() - 1);
+  }
   int number_of(const Eigen::Vector3i& block) {
     Recent& recent = recent_[static_cast<std::size_t>((block.x() & 1) | (block.y() & 1) << 1 |
                                                       (block.z() & 1) << 2)];
@@ -110,6 +112,7 @@ class SurfaceMarks {
   std::vector<Mark> marks_;
   std::array<Recent, 8> recent_{};
   int open_block_ = BlockIndex::kNone;
+  Eigen::Vector3i open_place_ = Eigen::Vector3i::Zero();
   std::size_t run_begin_ = 0;
 };
 
