@@ -1,7 +1,7 @@
 // The map engine beside OctoMap: the same frames of the same scene through both, in one run.
 //
 //   map_engine [--frames N] [--step N] [--voxel M] [--pixels N] [--threads N] [--depth clean|noisy]
-//              [--only NAME] [--config NAME] [--set occupancy parameter=value]...
+//              [--only NAME] [--no-accuracy] [--set occupancy parameter=value]...
 //
 // Without options: 5 and 10 cm, all pixels and every fourth, one and two threads, clean and noisy
 // depth. CPU time counts all threads; the machine may do other work, so compare CPU times.
@@ -17,6 +17,7 @@
 #include "stereovox/core/grid_geometry.h"
 #include "stereovox/occupancy/frame_view.h"
 #include "stereovox/occupancy/integrate.h"
+#include "stereovox/occupancy/map_queries.h"
 
 namespace stereovox::bench {
 namespace {
@@ -164,6 +165,25 @@ double look_up_ns(LookUp look_up) {
   return quantile(times.cpu_ms, 0.5) * kNsPerMs / kQueries;
 }
 
+// Rays into all directions from where the camera was, up to kMaxRange_m.
+template <class Cast>
+double ray_us(const std::vector<Frame>& frames, Cast cast) {
+  constexpr int kRays = 20'000;
+  constexpr double kUsPerMs = 1e3;
+  const std::vector<Eigen::Vector3d> targets = random_places(kRays);
+  std::int64_t hits = 0;
+  Times times;
+  for (int round = 0; round < 3; ++round)
+    time(times, [&] {
+      for (std::size_t i = 0; i < targets.size(); ++i) {
+        const Eigen::Vector3d& from = frames[i % frames.size()].T_world_camera.translation;
+        hits += cast(from, Eigen::Vector3d((targets[i] - from).normalized())) ? 1 : 0;
+      }
+    });
+  if (hits < 0) fmt::print("never\n");  // keeps the loop
+  return quantile(times.cpu_ms, 0.5) * kUsPerMs / kRays;
+}
+
 octomap::Pointcloud points_of(const Frame& frame, const Case& c) {
   const cv::Mat1f& disparity = frame.seen(c.depth).disparity_px;
   octomap::Pointcloud points;
@@ -206,6 +226,10 @@ Result run_octomap(const Case& c, const std::vector<Frame>& frames, const Truth&
   }
   result.bytes_per_voxel = static_cast<double>(tree.memoryUsage()) / static_cast<double>(known);
   result.look_up_ns = look_up_ns(state_at);
+  result.ray_us = ray_us(frames, [&](const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
+    octomap::point3d end;
+    return tree.castRay(octomap_point(from), octomap_point(way), end, true, kMaxRange_m);
+  });
   return result;
 }
 
