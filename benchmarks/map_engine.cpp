@@ -283,8 +283,8 @@ struct Engine {
 
 std::vector<Engine> engines() {
   return {{"log_odds", log_odds_settings()},
-          {"corrected", {{"preset", "corrected"}}},
-          {"tuned", {{"preset", "tuned"}}}};
+          {"corrected", {{"preset", "corrected"}, {"observed_set", "projected"}}},
+          {"tuned", {{"preset", "tuned"}, {"observed_set", "projected"}}}};
 }
 
 Settings parsed(const std::vector<std::string>& words) {
