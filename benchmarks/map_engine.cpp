@@ -259,6 +259,10 @@ Result run_ours(const std::string& name, OccupancyParams params, const Case& c,
       accuracy_of(truth, [&](const Eigen::Vector3i& voxel) { return state_of(map.at(voxel)); });
   result.bytes_per_voxel =
       static_cast<double>(map.memory_bytes()) / static_cast<double>(map.known_voxel_count());
+  const MapQueries queries(map);
+  result.ray_us = ray_us(frames, [&](const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
+    return queries.cast_ray(from, way, kMaxRange_m).has_value();
+  });
   result.look_up_ns = look_up_ns([&](const Eigen::Vector3d& p) {
     return state_of(map.at(voxel_index_of(c.voxel_size_m, p)));
   });
