@@ -6,164 +6,147 @@
 
 #include "stereovox/core/parallel.h"
 #include "stereovox/occupancy/frame_evidence.h"
+#include "stereovox/occupancy/free_space.h"
+#include "stereovox/occupancy/masked_blocks.h"
+#include "stereovox/occupancy/surface_marks.h"
 #include "stereovox/occupancy/voxel_ray.h"
 
 namespace stereovox {
 namespace {
 
-// Evidence of one point for one voxel.
-struct Mark {
-  std::uint16_t position = 0;  // in the block
-  bool is_inside = false;      // the point lies in this voxel
-  bool is_exact = false;       // its error is small against the voxel
-  float evidence = 0.0F;
-};
-
-struct MarkedBlock {
-  std::vector<Mark> marks;
-  VoxelMask free;
-};
-
-// Collects marks and free voxels by block. Consecutive voxels mostly lie in the same block.
-class MarkedBlocks {
- public:
-  MarkedBlock& block_with(const Eigen::Vector3i& voxel) {
-    const Eigen::Vector3i block = block_of(voxel);
-    if (last_ == BlockIndex::kNone || block != last_block_) {
-      last_block_ = block;
-      last_ = number_of(block);
-    }
-    return blocks[static_cast<std::size_t>(last_)];
-  }
-
-  void append(MarkedBlocks&& other) {
-    points_used += other.points_used;
-    for (std::size_t i = 0; i < other.blocks.size(); ++i) {
-      MarkedBlock& block = blocks[static_cast<std::size_t>(number_of(other.indices[i]))];
-      block.free |= other.blocks[i].free;
-      block.marks.insert(block.marks.end(), other.blocks[i].marks.begin(),
-                         other.blocks[i].marks.end());
-    }
-  }
-
-  BlockIndex index;
-  std::vector<Eigen::Vector3i> indices;
-  std::vector<MarkedBlock> blocks;
-  int points_used = 0;
-
- private:
-  int number_of(const Eigen::Vector3i& block) {
-    const int number = index.find_or_insert(block);
-    if (number == static_cast<int>(blocks.size())) {
-      indices.push_back(block);
-      blocks.emplace_back();
-    }
-    return number;
-  }
-
-  Eigen::Vector3i last_block_ = Eigen::Vector3i::Zero();
-  int last_ = BlockIndex::kNone;
-};
-
 struct RowRange {
   int begin = 0, end = 0;
 };
 
-// Calls visit(point) for each measured pixel of the sampling grid in these rows.
+// Calls visit(run) for the sampling grid in these rows, at most a chunk at a time.
 template <class Visit>
-void for_each_sample(const FrameView& frame, int step, RowRange rows, Visit visit) {
+void for_each_run(const FrameView& frame, int step, RowRange rows, Visit visit) {
+  const int width = frame.camera.pinhole.width;
   const int skipped = (rows.begin - first_sample(step) + step - 1) / step;
   const int first_row = first_sample(step) + std::max(0, skipped) * step;
   for (int v = first_row; v < rows.end; v += step)
-    for (int u = first_sample(step); u < frame.camera.pinhole.width; u += step)
-      if (const std::optional<PointMeasurement> point = measure_pixel(frame, u, v)) visit(*point);
+    for (int u = first_sample(step); u < width; u += PixelChunk::kSize * step)
+      visit(PixelRun{v, u, step, std::min(PixelChunk::kSize, (width - u + step - 1) / step)});
 }
 
-// Step 2, first half: which voxels the points speak for.
-template <class Model>
-void mark_surfaces(const Model& model, const FrameView& frame, RowRange rows, MarkedBlocks& out) {
-  const double size_m = frame.params.voxel_size_m;
-  for_each_sample(frame, frame.steps.surface_px, rows, [&](const PointMeasurement& point) {
-    if (!marks_surface(frame, point)) return;
-    ++out.points_used;
-    const Eigen::Vector3i own = voxel_index_of(size_m, point.p_world);
-    const bool is_exact_point = is_exact(frame, point);
-    for_each_observed_voxel(model, point, size_m,
-                            [&](const Eigen::Vector3i& voxel, float evidence) {
-                              const bool is_inside = voxel == own;
-                              if (evidence > 0.0F || is_inside)
-                                out.block_with(voxel).marks.push_back(
-                                    {static_cast<std::uint16_t>(position_in_block(voxel)),
-                                     is_inside, is_exact_point, evidence});
-                            });
+// Calls visit(point) for each measured pixel of the sampling grid in these rows.
+template <class Visit>
+void for_each_sample(const FrameView& frame, int step, RowRange rows, Visit visit) {
+  for_each_run(frame, step, rows, [&](const PixelRun& run) {
+    for (int i = 0; i < run.count; ++i)
+      if (const auto point = measure_pixel(frame, run.first_u_px + i * step, run.v_px))
+        visit(*point);
   });
 }
 
-// The same along the rays, when the update rule has a profile.
-void mark_profiles(const SurfaceProfile& profile, const FrameView& frame, RowRange rows,
-                   MarkedBlocks& out) {
-  for_each_sample(frame, frame.steps.surface_px, rows, [&](const PointMeasurement& point) {
-    if (!marks_surface(frame, point)) return;
-    ++out.points_used;
-    for_each_profiled_voxel(
-        profile, frame, point, [&](const Eigen::Vector3i& voxel, float evidence) {
-          out.block_with(voxel).marks.push_back(
-              {static_cast<std::uint16_t>(position_in_block(voxel)), false, false, evidence});
-        });
+int sample_count(int pixels, int step) { return (pixels - first_sample(step) + step - 1) / step; }
+
+// Where the free ends of a chunk belong among those of the frame.
+void store_reach(const FrameView& frame, const PixelRun& run, const PixelChunk& chunk,
+                 ReachPyramid& reach) {
+  const int step = frame.steps.ray_px;
+  float* const row = reach.row(run.v_px / step) + run.first_u_px / step;
+  for (int i = 0; i < run.count; ++i)
+    row[i] = reach_of(chunk.free_end_m[static_cast<std::size_t>(i)], frame.params.voxel_size_m);
+}
+
+void store_reach(const FrameView& frame, RowRange rows, ReachPyramid& reach) {
+  PixelChunk chunk;
+  for_each_run(frame, frame.steps.ray_px, rows, [&](const PixelRun& run) {
+    measure_chunk(frame, run, chunk);
+    store_reach(frame, run, chunk, reach);
   });
 }
 
-// Step 3: the space that the rays cross.
-void clear_rays(const FrameView& frame, RowRange rows, MarkedBlocks& out) {
+// What the points of some rows mark. With `reach` the free ends of their rays are stored as well:
+// both read the same pixels.
+void mark_rows(const FrameView& frame, RowRange rows, ReachPyramid* reach,
+               SurfaceMarks<LevelMark>& marks) {
+  PixelChunk chunk;
+  AxisLevels levels;
+  for_each_run(frame, frame.steps.surface_px, rows, [&](const PixelRun& run) {
+    measure_chunk(frame, run, chunk);
+    mark_levels(frame, chunk, levels, marks);
+    if (reach != nullptr) store_reach(frame, run, chunk, *reach);
+  });
+}
+
+void mark_rows(const FrameView& frame, RowRange rows, ReachPyramid* reach,
+               SurfaceMarks<EvidenceMark>& marks) {
+  for_each_run(frame, frame.steps.surface_px, rows,
+               [&](const PixelRun& run) { mark_evidence(frame, run, marks); });
+  if (reach != nullptr) store_reach(frame, rows, *reach);
+}
+
+// Step 3 by rays: the space that they cross.
+void clear_rays(const FrameView& frame, RowRange rows, MaskedBlocks& free) {
   for_each_sample(frame, frame.steps.ray_px, rows, [&](const PointMeasurement& point) {
     const std::optional<Segment> segment = free_segment(frame, point);
     if (!segment) return;
     for_each_voxel_on_segment(segment->from, segment->to, frame.params.voxel_size_m,
-                              [&](const Eigen::Vector3i& voxel) {
-                                out.block_with(voxel).free.set(position_in_block(voxel));
-                              });
+                              [&](const Eigen::Vector3i& voxel) { free.set(voxel); });
   });
 }
 
-MarkedBlocks mark_rows(const FrameView& frame, RowRange rows) {
-  MarkedBlocks marked;
-  if (frame.profile != nullptr)
-    mark_profiles(*frame.profile, frame, rows, marked);
-  else
-    std::visit([&](const auto& model) { mark_surfaces(model, frame, rows, marked); },
-               frame.params.observation);
-  if (frame.params.observed_set == ObservedSet::raycast) clear_rays(frame, rows, marked);
-  return marked;
-}
-
-void clear_frustum(const FrameView& frame, MarkedBlocks& out) {
+void clear_frustum(const FrameView& frame, MaskedBlocks& free) {
   const VoxelBounds bounds = frustum_bounds(frame);
   Eigen::Vector3i voxel;
   for (voxel.z() = bounds.min.z(); voxel.z() <= bounds.max.z(); ++voxel.z())
     for (voxel.y() = bounds.min.y(); voxel.y() <= bounds.max.y(); ++voxel.y())
       for (voxel.x() = bounds.min.x(); voxel.x() <= bounds.max.x(); ++voxel.x())
-        if (is_in_frustum(frame, voxel)) out.block_with(voxel).free.set(position_in_block(voxel));
+        if (is_in_frustum(frame, voxel)) free.set(voxel);
 }
 
-void clear_known(const VoxelMap& map, MarkedBlocks& out) {
+void clear_known(const VoxelMap& map, MaskedBlocks& free) {
   for (const VoxelBlock* const block : map.sorted_blocks())
     for (int i = 0; i < kVoxelsPerBlock; ++i)
-      if (is_known(block->voxels[static_cast<std::size_t>(i)]))
-        out.block_with(voxel_at(block->index, i)).free.set(i);
+      if (is_known(block->voxels[static_cast<std::size_t>(i)])) free.set(voxel_at(block->index, i));
 }
 
-MarkedBlocks mark_frame(const FrameView& frame, const VoxelMap& map, int threads) {
-  const int bands = std::max(1, std::min(threads, frame.disparity.height()));
-  std::vector<MarkedBlocks> marked(static_cast<std::size_t>(bands));
-  const auto row_of = [&](int band) { return frame.disparity.height() * band / bands; };
-  parallel_for(0, bands, threads, [&](int band) {
-    marked[static_cast<std::size_t>(band)] = mark_rows(frame, {row_of(band), row_of(band + 1)});
-  });
-  MarkedBlocks all = std::move(marked.front());
-  for (std::size_t band = 1; band < marked.size(); ++band) all.append(std::move(marked[band]));
-  if (frame.params.observed_set != ObservedSet::raycast) clear_frustum(frame, all);
-  if (frame.params.observed_set == ObservedSet::all) clear_known(map, all);
-  return all;
+// The bands of rows that threads share.
+class Bands {
+ public:
+  Bands(const FrameView& frame, int threads)
+      : height_(frame.disparity.height()),
+        threads_(threads),
+        count_(std::clamp(threads, 1, height_)) {}
+
+  std::size_t count() const { return static_cast<std::size_t>(count_); }
+  template <class Work>
+  void for_each(Work work) const {
+    parallel_for(0, count_, threads_, [&](int band) {
+      work(static_cast<std::size_t>(band), RowRange{row_of(band), row_of(band + 1)});
+    });
+  }
+
+ private:
+  int row_of(int band) const { return static_cast<int>(std::int64_t{height_} * band / count_); }
+
+  int height_, threads_, count_;
+};
+
+MaskedBlocks free_by_rays(const FrameView& frame, const Bands& bands) {
+  std::vector<MaskedBlocks> free(bands.count());
+  bands.for_each([&](std::size_t band, RowRange rows) { clear_rays(frame, rows, free[band]); });
+  for (std::size_t band = 1; band < free.size(); ++band)
+    for (std::size_t i = 0; i < free[band].indices().size(); ++i)
+      free.front().insert(free[band].indices()[i], free[band].masks()[i]);
+  return std::move(free.front());
+}
+
+MaskedBlocks free_by_projection(const FrameView& frame, ReachPyramid& reach, int threads) {
+  reach.build();
+  MaskedBlocks free;
+  for (const CrossedBlock& block : crossed_blocks(free_space_view(frame), reach, threads))
+    free.insert(block.index, block.voxels);
+  return free;
+}
+
+MaskedBlocks free_within_view(const FrameView& frame, const VoxelMap& map) {
+  MaskedBlocks free;
+  clear_frustum(frame, free);
+  if (frame.params.observed_set == ObservedSet::all) clear_known(map, free);
+  return free;
 }
 
 std::vector<float> values_where(const VoxelMask& observed) {
@@ -177,22 +160,24 @@ std::vector<float> values_where(const VoxelMask& observed) {
 class EvidenceTable {
  public:
   // `observation`(evidence, expected points, whether rays crossed the voxel) is O_t.
+  template <class Mark>
+  void add(const Mark& mark) {
+    touched_.set(mark.position());
+    mark.add_to(table_[static_cast<std::size_t>(mark.position())]);
+  }
+
   template <class Observation>
-  BlockObservation join(const FrameView& frame, const MarkedBlock& marked,
-                        const Eigen::Vector3i& index, Observation observation) {
-    BlockObservation out{.index = index, .observed = marked.free, .hit = {}, .values = {}};
+  BlockObservation join(const FrameView& frame, const VoxelMask& free, const Eigen::Vector3i& index,
+                        Observation observation) {
+    BlockObservation out{.index = index, .observed = free, .hit = {}, .values = {}};
     const float min_hit = min_hit_observation(frame);
-    for (const Mark& mark : marked.marks) {
-      touched_.set(mark.position);
-      table_[mark.position].add(mark.evidence, mark.is_inside, mark.is_exact);
-    }
     for_each_in(touched_, [&](int i) {
       VoxelEvidence& evidence = table_[static_cast<std::size_t>(i)];
       const double expected = expected_points(frame, voxel_at(index, i));
-      const float value = observation(evidence, expected, marked.free.contains(i));
+      const float value = observation(evidence, expected, free.contains(i));
       evidence = {};
       if (value == kNothingSaid) return;
-      if (out.values.empty()) out.values = values_where(marked.free);
+      if (out.values.empty()) out.values = values_where(free);
       out.values[static_cast<std::size_t>(i)] = value;
       out.observed.set(i);
       if (value > min_hit) out.hit.set(i);
@@ -206,36 +191,92 @@ class EvidenceTable {
   VoxelMask touched_;
 };
 
+template <class Mark>
+using MarkedBands = std::vector<SurfaceMarks<Mark>>;
+
+// For each block of the frame and each band of rows: the number of that block in that band's marks.
+class BandBlocks {
+ public:
+  template <class Mark>
+  BandBlocks(const MarkedBands<Mark>& marked, MaskedBlocks& blocks) : bands_(marked.size()) {
+    for (std::size_t band = 0; band < bands_; ++band)
+      for (std::size_t i = 0; i < marked[band].blocks().size(); ++i) {
+        const auto number = static_cast<std::size_t>(blocks.number_of(marked[band].blocks()[i]));
+        if (numbers_.size() < (number + 1) * bands_) numbers_.resize((number + 1) * bands_, kNone);
+        numbers_[number * bands_ + band] = i;
+      }
+    numbers_.resize(blocks.indices().size() * bands_, kNone);
+  }
+
+  template <class Mark, class Visit>
+  void for_each_mark(const MarkedBands<Mark>& marked, std::size_t block, Visit visit) const {
+    for (std::size_t band = 0; band < bands_; ++band)
+      if (const std::size_t i = numbers_[block * bands_ + band]; i != kNone)
+        marked[band].for_each_in_block(i, visit);
+  }
+
+ private:
+  static constexpr std::size_t kNone = ~std::size_t{0};
+
+  std::size_t bands_;
+  std::vector<std::size_t> numbers_;
+};
+
 // Joins all blocks, shares of them on threads.
-template <class Observation>
-std::vector<BlockObservation> join_blocks(const FrameView& frame, const MarkedBlocks& marked,
-                                          int threads, Observation observation) {
+template <class Mark, class Observation>
+std::vector<BlockObservation> join_blocks(const FrameView& frame, const MarkedBands<Mark>& marked,
+                                          MaskedBlocks& blocks, int threads,
+                                          Observation observation) {
   constexpr int kSharesPerThread = 8;  // blocks differ in their work
+  const BandBlocks bands(marked, blocks);
   const int shares = threads > 1 ? threads * kSharesPerThread : 1;
-  const int count = static_cast<int>(marked.blocks.size());
-  std::vector<BlockObservation> joined(marked.blocks.size());
+  const int count = static_cast<int>(blocks.indices().size());
+  std::vector<BlockObservation> joined(blocks.indices().size());
   parallel_for(0, shares, threads, [&](int share) {
     EvidenceTable table;
     const int end = static_cast<int>(std::int64_t{count} * (share + 1) / shares);
     for (int i = static_cast<int>(std::int64_t{count} * share / shares); i < end; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      joined[at] = table.join(frame, marked.blocks[at], marked.indices[at], observation);
+      bands.for_each_mark(marked, at, [&](const Mark& mark) { table.add(mark); });
+      joined[at] = table.join(frame, blocks.masks()[at], blocks.indices()[at], observation);
     }
   });
   return joined;
 }
 
+template <class Mark>
+FrameObservation observe_with(const FrameView& frame, const VoxelMap& map, int threads) {
+  const Bands bands(frame, threads);
+  const SamplingSteps& steps = frame.steps;
+  const bool is_projected = frame.params.observed_set == ObservedSet::projected;
+  const bool share_pixels = is_projected && steps.ray_px == steps.surface_px;
+  ReachPyramid reach(is_projected ? sample_count(frame.disparity.width(), steps.ray_px) : 1,
+                     is_projected ? sample_count(frame.disparity.height(), steps.ray_px) : 1);
+  MarkedBands<Mark> marked(bands.count());
+  bands.for_each([&](std::size_t band, RowRange rows) {
+    mark_rows(frame, rows, share_pixels ? &reach : nullptr, marked[band]);
+    marked[band].close();
+    if (is_projected && !share_pixels) store_reach(frame, rows, reach);
+  });
+  MaskedBlocks blocks = is_projected ? free_by_projection(frame, reach, threads)
+                        : frame.params.observed_set == ObservedSet::raycast
+                            ? free_by_rays(frame, bands)
+                            : free_within_view(frame, map);
+
+  FrameObservation out;
+  for (const SurfaceMarks<Mark>& band : marked) out.points_used += band.points_used;
+  with_observation(frame, [&](auto observation) {
+    out.blocks = join_blocks(frame, marked, blocks, threads, observation);
+  });
+  out.index = blocks.index();
+  return out;
+}
+
 }  // namespace
 
 FrameObservation observe_frame(const FrameView& frame, const VoxelMap& map, int threads) {
-  MarkedBlocks marked = mark_frame(frame, map, threads);
-  FrameObservation out;
-  out.points_used = marked.points_used;
-  with_observation(frame, [&](auto observation) {
-    out.blocks = join_blocks(frame, marked, threads, observation);
-  });
-  out.index = std::move(marked.index);
-  return out;
+  return levels_suffice(frame) ? observe_with<LevelMark>(frame, map, threads)
+                               : observe_with<EvidenceMark>(frame, map, threads);
 }
 
 }  // namespace stereovox

@@ -55,13 +55,9 @@ bool is_measured(float disparity_px, float sigma_px) {
          std::isfinite(sigma_px);
 }
 
-// How long before the point its ray ceases to clear space.
-double free_margin_m(const FrameView& frame, const PointMeasurement& point) {
-  const double size_m = frame.params.voxel_size_m;
-  const double margin_m = frame.profile != nullptr
-                              ? point.range_m - frame.profile->extent(point, size_m).begin_m
-                              : frame.params.free_margin_sigmas * point.sigma_range_m;
-  return std::max(0.5 * size_m, margin_m);
+double free_end_m(const FrameView& frame, const PointMeasurement& point) {
+  const double end_m = point.range_m - free_margin(frame).of(point.sigma_range_m);
+  return std::min(end_m, frame.params.max_clearing_m);
 }
 
 // The part of this stretch of the ray that lies within the height limits.
@@ -111,6 +107,7 @@ FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& cam
           .profile = profile_of(params.update),
           .T_world_camera = T_world_camera,
           .T_camera_world = inverse(T_world_camera),
+          .measuring = measuring_frame(params.error_model, camera, T_world_camera),
           .stamp_ms = stamp_in_map_ms(stamp_ns, map),
           .min_z_m = map.floor_z_m() + params.min_height_m,
           .max_z_m = map.floor_z_m() + params.max_height_m};
@@ -120,31 +117,42 @@ std::optional<PointMeasurement> measure_pixel(const FrameView& frame, int u, int
   const float disparity_px = frame.disparity.disparity_px(v, u);
   const float sigma_px = frame.disparity.sigma_px(v, u);
   if (!is_measured(disparity_px, sigma_px)) return std::nullopt;
-  if (frame.camera.depth_m(disparity_px) < frame.params.min_depth_m) return std::nullopt;
-  const PointMeasurement point = measure_point(
-      frame.params.error_model, frame.camera, frame.T_world_camera, {u, v}, disparity_px, sigma_px);
-  if (point.p_world.z() < frame.min_z_m) return std::nullopt;
+  const PointMeasurement point = measure_point(frame.measuring, {u, v}, disparity_px, sigma_px);
+  if (point.depth_m < frame.params.min_depth_m || point.p_world.z() < frame.min_z_m)
+    return std::nullopt;
   return point;
 }
 
+double max_sigma_m(const OccupancyParams& params) {
+  return params.max_sigma_half_voxels * 0.5 * params.voxel_size_m;
+}
+
 bool marks_surface(const FrameView& frame, const PointMeasurement& point) {
-  const OccupancyParams& params = frame.params;
-  const double max_sigma_m = params.max_sigma_half_voxels * 0.5 * params.voxel_size_m;
-  return point.depth_m <= params.max_depth_m && point.sigma_range_m <= max_sigma_m &&
-         point.p_world.z() <= frame.max_z_m;
+  return point.depth_m <= frame.params.max_depth_m &&
+         point.sigma_range_m <= max_sigma_m(frame.params) && point.p_world.z() <= frame.max_z_m;
 }
 
 bool is_exact(const FrameView& frame, const PointMeasurement& point) {
   return point.sigma_range_m < 0.5 * frame.params.voxel_size_m;
 }
 
+FreeMargin free_margin(const FrameView& frame) {
+  const double half_voxel_m = 0.5 * frame.params.voxel_size_m;
+  if (frame.profile == nullptr) return {frame.params.free_margin_sigmas, 0.0, half_voxel_m};
+  return {kSplineReach, half_voxel_m * frame.profile->min_sigma_half_voxels, half_voxel_m};
+}
+
 std::optional<Segment> free_segment(const FrameView& frame, const PointMeasurement& point) {
-  const double end_m = point.range_m - free_margin_m(frame, point);
-  return within_heights(frame, point, {0.0, std::min(end_m, frame.params.max_clearing_m)});
+  return within_heights(frame, point, {0.0, free_end_m(frame, point)});
+}
+
+float free_end_m(const FrameView& frame, int u, int v) {
+  const std::optional<PointMeasurement> point = measure_pixel(frame, u, v);
+  return point ? static_cast<float>(std::max(0.0, free_end_m(frame, *point))) : 0.0F;
 }
 
 std::optional<Segment> profile_segment(const FrameView& frame, const PointMeasurement& point) {
-  const double begin_m = std::max(0.0, point.range_m - free_margin_m(frame, point));
+  const double begin_m = std::max(0.0, point.range_m - free_margin(frame).of(point.sigma_range_m));
   const double end_m = frame.profile->extent(point, frame.params.voxel_size_m).end_m;
   return within_heights(frame, point, {begin_m, end_m});
 }

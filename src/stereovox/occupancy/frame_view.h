@@ -33,6 +33,7 @@ struct FrameView {
   // Of the update rule; nullptr when surfaces are observed by params.observation.
   const SurfaceProfile* profile = nullptr;
   SE3 T_world_camera, T_camera_world;
+  MeasuringFrame measuring;
   std::uint32_t stamp_ms = 0;       // since the map's epoch
   double min_z_m = 0, max_z_m = 0;  // height limits in the world
 };
@@ -56,6 +57,9 @@ inline int first_sample(int step) { return step / 2; }
 // is nearer than min_depth_m or below the lowest height.
 std::optional<PointMeasurement> measure_pixel(const FrameView& frame, int u, int v);
 
+// Measurements whose range has a larger error only clear space.
+double max_sigma_m(const OccupancyParams& params);
+
 // Whether the point is certain, near and low enough to mark a surface; if not, it only clears.
 bool marks_surface(const FrameView& frame, const PointMeasurement& point);
 
@@ -63,9 +67,26 @@ bool marks_surface(const FrameView& frame, const PointMeasurement& point);
 // the voxel it should.
 bool is_exact(const FrameView& frame, const PointMeasurement& point);
 
-// The part of the ray to the point that is known to be free: up to max(r, k_f sigma) before the
-// point, or to where the profile begins, not farther than max_clearing_m, within the height limits.
+// How long before a point its ray ceases to clear space: max(r, sigmas * max(sigma, min_sigma_m)),
+// which is k_f sigma, or up to where the profile of the update rule begins.
+struct FreeMargin {
+  double sigmas = 0, min_sigma_m = 0, half_voxel_m = 0;
+
+  [[gnu::always_inline]] double of(double sigma_range_m) const {
+    const double floored_m = sigma_range_m > min_sigma_m ? sigma_range_m : min_sigma_m;
+    const double margin_m = sigmas * floored_m;
+    return margin_m > half_voxel_m ? margin_m : half_voxel_m;
+  }
+};
+FreeMargin free_margin(const FrameView& frame);
+
+// The part of the ray to the point that is known to be free: up to the free margin before the
+// point, not farther than max_clearing_m, within the height limits.
 std::optional<Segment> free_segment(const FrameView& frame, const PointMeasurement& point);
+
+// The same along the ray of pixel (u, v), whatever the heights, in metres from the camera; 0 when
+// nothing is free.
+float free_end_m(const FrameView& frame, int u, int v);
 
 // The part of the ray that the profile speaks of beyond the free one, within the height limits.
 std::optional<Segment> profile_segment(const FrameView& frame, const PointMeasurement& point);

@@ -26,10 +26,18 @@ int padded_position_of(int position) {
 class PaddedObservations {
  public:
   PaddedObservations(const FrameObservation& frame, const BlockObservation& center) {
-    Eigen::Vector3i step;
-    for (step.z() = -1; step.z() <= 1; ++step.z())
-      for (step.y() = -1; step.y() <= 1; ++step.y())
-        for (step.x() = -1; step.x() <= 1; ++step.x()) take_from(frame, center, step);
+    std::array<const BlockObservation*, kCube> blocks{};
+    for (int i = 0; i < kCube; ++i) {
+      const int number = frame.index.find(center.index + step_to(i));
+      if (number == BlockIndex::kNone) continue;
+      blocks[static_cast<std::size_t>(i)] = &frame.blocks[static_cast<std::size_t>(number)];
+      has_hits_ = has_hits_ || !frame.blocks[static_cast<std::size_t>(number)].values.empty();
+    }
+    if (!has_hits_) return;
+    values_.fill(kUnobserved);
+    for (int i = 0; i < kCube; ++i)
+      if (blocks[static_cast<std::size_t>(i)] != nullptr)
+        copy_overlap(*blocks[static_cast<std::size_t>(i)], step_to(i));
   }
 
   // When nothing near is hit, every observation near is 0 and so is H.
@@ -46,14 +54,9 @@ class PaddedObservations {
   }
 
  private:
-  void take_from(const FrameObservation& frame, const BlockObservation& center,
-                 const Eigen::Vector3i& step) {
-    const int number = frame.index.find(center.index + step);
-    if (number == BlockIndex::kNone) return;
-    const BlockObservation& block = frame.blocks[static_cast<std::size_t>(number)];
-    has_hits_ = has_hits_ || !block.values.empty();
-    copy_overlap(block, step);
-  }
+  static constexpr int kCube = 27;  // the block and those around it
+
+  static Eigen::Vector3i step_to(int i) { return {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}; }
 
   void copy_overlap(const BlockObservation& block, const Eigen::Vector3i& step) {
     const auto low = [](int s) { return s < 0 ? kBlockSide - 1 : 0; };
@@ -66,13 +69,7 @@ class PaddedObservations {
               block.value_at(position_in_block({x, y, z}));
   }
 
-  static constexpr std::array<float, kPaddedSide * kPaddedSide * kPaddedSide> all_unobserved() {
-    std::array<float, kPaddedSide * kPaddedSide * kPaddedSide> values{};
-    values.fill(kUnobserved);
-    return values;
-  }
-
-  std::array<float, kPaddedSide* kPaddedSide* kPaddedSide> values_ = all_unobserved();
+  std::array<float, kPaddedSide * kPaddedSide * kPaddedSide> values_;  // not while uniform
   bool has_hits_ = false;
 };
 
@@ -178,6 +175,26 @@ void update_map(const VisibilityRule& rule, const FrameChange& change, const Vox
   });
 }
 
+// Sorts numbers in place of voxels, which is several times faster. A frame is less than 2^21 voxels
+// wide.
+void sort_canonically(std::vector<Eigen::Vector3i>& voxels) {
+  if (voxels.empty()) return;
+  constexpr int kBits = 21, kMask = (1 << kBits) - 1;
+  Eigen::Vector3i low = voxels.front();
+  for (const Eigen::Vector3i& voxel : voxels) low = low.cwiseMin(voxel);
+  std::vector<std::uint64_t> keys;
+  keys.reserve(voxels.size());
+  for (const Eigen::Vector3i& voxel : voxels) {
+    const Eigen::Matrix<std::uint64_t, 3, 1> place = (voxel - low).cast<std::uint64_t>();
+    keys.push_back(place.x() << 2 * kBits | place.y() << kBits | place.z());
+  }
+  std::ranges::sort(keys);
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    voxels[i] = low + Eigen::Vector3i(static_cast<int>(keys[i] >> 2 * kBits),
+                                      static_cast<int>(keys[i] >> kBits & kMask),
+                                      static_cast<int>(keys[i] & kMask));
+}
+
 FrameUpdate summary_of(const FrameObservation& observation) {
   FrameUpdate update;
   update.points_used = observation.points_used;
@@ -186,7 +203,7 @@ FrameUpdate summary_of(const FrameObservation& observation) {
     for (const std::uint64_t word : block.observed.words) observed += std::popcount(word);
     for_each_in(block.hit, [&](int i) { update.hits.push_back(voxel_at(block.index, i)); });
   }
-  std::ranges::sort(update.hits, LatticeOrder{});
+  sort_canonically(update.hits);
   update.hit_voxels = static_cast<int>(update.hits.size());
   update.free_voxels = observed - update.hit_voxels;
   return update;

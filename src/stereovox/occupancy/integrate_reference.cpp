@@ -5,6 +5,7 @@
 
 #include "stereovox/occupancy/frame_evidence.h"
 #include "stereovox/occupancy/frame_visibility.h"
+#include "stereovox/occupancy/free_space.h"
 #include "stereovox/occupancy/voxel_update.h"
 
 namespace stereovox {
@@ -58,6 +59,30 @@ VoxelSet voxels_on_rays(const FrameView& frame) {
   return crossed;
 }
 
+// The same as seen in the image.
+VoxelSet voxels_seen_free(const FrameView& frame) {
+  const int step = frame.steps.ray_px, first = first_sample(step);
+  const auto samples = [&](int pixels) { return (pixels - first + step - 1) / step; };
+  ReachPyramid reach(samples(frame.disparity.width()), samples(frame.disparity.height()));
+  for (int v = 0; v < reach.height(); ++v)
+    for (int u = 0; u < reach.width(); ++u)
+      reach.row(v)[u] = reach_of(free_end_m(frame, first + u * step, first + v * step),
+                                 frame.params.voxel_size_m);
+  reach.build();
+
+  const FreeSpaceView view = free_space_view(frame);
+  const int reach_voxels =
+      static_cast<int>(std::ceil(frame.params.max_clearing_m / frame.params.voxel_size_m)) + 1;
+  VoxelSet crossed;
+  for (int x = -reach_voxels; x <= reach_voxels; ++x)
+    for (int y = -reach_voxels; y <= reach_voxels; ++y)
+      for (int z = -reach_voxels; z <= reach_voxels; ++z)
+        if (const Eigen::Vector3i voxel = view.camera_voxel + Eigen::Vector3i(x, y, z);
+            is_crossed(view, reach, voxel))
+          crossed.insert(voxel);
+  return crossed;
+}
+
 VoxelSet voxels_in_frustum(const FrameView& frame) {
   const auto [min, max] = frustum_bounds(frame);
   VoxelSet inside;
@@ -70,6 +95,7 @@ VoxelSet voxels_in_frustum(const FrameView& frame) {
 
 VoxelSet observed_besides_hits(const FrameView& frame, const VoxelMap& map) {
   if (frame.params.observed_set == ObservedSet::raycast) return voxels_on_rays(frame);
+  if (frame.params.observed_set == ObservedSet::projected) return voxels_seen_free(frame);
   VoxelSet observed = voxels_in_frustum(frame);
   if (frame.params.observed_set == ObservedSet::frustum) return observed;
   for (const VoxelBlock* block : map.sorted_blocks())

@@ -66,6 +66,11 @@ const std::vector<Settings> kFurtherChoices = {
     {{"update.type", "continuous_log_odds"}, {"union.type", "max"}, {"pixel_step", "3"}},
     {{"update.type", "continuous_log_odds"}, {"update.min_sigma_half_voxels", "0"}},
     {{"update.type", "visibility"}, {"update.unknown_occupancy", "0.02"}},
+    {{"observed_set", "projected"}, {"ray_step_px", "1"}, {"union.type", "rank"}},
+    {{"observed_set", "projected"}, {"update.type", "continuous_log_odds"}},
+    {{"observation.type", "point"}, {"union.type", "rank"}, {"update.type", "log_odds"}},
+    {{"observation.type", "min_ramp"}, {"union.type", "rank"}, {"union.majority", "0.5"}},
+    {{"observation.type", "min_ramp"}, {"union.type", "rank"}, {"max_sigma_half_voxels", "30"}},
     {{"update.type", "dempster_shafer"}, {"update.conflict", "yager"}},
 };
 
@@ -118,6 +123,15 @@ TEST(Integrate, GivesTheSameMapForAnyNumberOfThreads) {
     const Result one = run(integrate, drive, params, 1);
     for (const int threads : {2, 3, 8}) expect_equal(run(integrate, drive, params, threads), one);
   }
+}
+
+TEST(Integrate, GivesTheSameMapForAnyNumberOfThreadsWhenItProjects) {
+  const auto drive = scene::random_drive(7, 6);
+  OccupancyParams params = scene::params(OccupancyPreset::corrected);
+  params.observed_set = ObservedSet::projected;
+  params.voxel_size_m = 0.07;
+  const Result one = run(integrate, drive, params, 1);
+  for (const int threads : {2, 3, 8}) expect_equal(run(integrate, drive, params, threads), one);
 }
 
 TEST(Integrate, GivesTheSameMapForAnyNumberOfThreadsByEveryUpdateRule) {

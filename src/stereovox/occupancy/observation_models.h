@@ -11,13 +11,28 @@
 #include "stereovox/occupancy/euclid_continuous_observation.h"
 #include "stereovox/occupancy/literal_observation.h"
 #include "stereovox/occupancy/min_ramp_observation.h"
+#include "stereovox/occupancy/point_observation.h"
 #include "stereovox/occupancy/printed_shape_observation.h"
 
 namespace stereovox {
 
 using ObservationModel =
     std::variant<LiteralObservation, PrintedShapeObservation, EuclidContinuousObservation,
-                 MinRampObservation, BoxObservation>;
+                 MinRampObservation, BoxObservation, PointObservation>;
+
+// A model whose evidence is the least of what it says along each axis of the world.
+template <class Model>
+concept AxisModel = requires(const Model& model) {
+  model.axis_evidence(0.0, 0.0, 0.0);
+};
+
+// The voxels along one axis whose centres lie within the reach of a coordinate: first and last.
+[[gnu::always_inline]] inline double first_in_reach(double p_m, double reach_m, double size_m) {
+  return std::ceil((p_m - reach_m) / size_m - 0.5);
+}
+[[gnu::always_inline]] inline double last_in_reach(double p_m, double reach_m, double size_m) {
+  return std::floor((p_m + reach_m) / size_m - 0.5);
+}
 
 // Calls visit(voxel, evidence) for each voxel within the model's reach of the point.
 template <class Model, class Visit>
@@ -25,10 +40,11 @@ void for_each_observed_voxel(const Model& model, const PointMeasurement& point, 
                              Visit visit) {
   const double half_edge_m = 0.5 * voxel_size_m;
   const Eigen::Vector3d reach_m = model.reach_m(point, half_edge_m);
-  const Eigen::Vector3i first =
-      ((point.p_world - reach_m).array() / voxel_size_m - 0.5).ceil().cast<int>();
-  const Eigen::Vector3i last =
-      ((point.p_world + reach_m).array() / voxel_size_m - 0.5).floor().cast<int>();
+  Eigen::Vector3i first, last;
+  for (int k = 0; k < 3; ++k) {
+    first[k] = static_cast<int>(first_in_reach(point.p_world[k], reach_m[k], voxel_size_m));
+    last[k] = static_cast<int>(last_in_reach(point.p_world[k], reach_m[k], voxel_size_m));
+  }
   Eigen::Vector3i voxel;
   for (voxel.z() = first.z(); voxel.z() <= last.z(); ++voxel.z())
     for (voxel.y() = first.y(); voxel.y() <= last.y(); ++voxel.y())

@@ -77,7 +77,7 @@ std::span<const std::string> names_of(OccupancyPreset) {
 }
 
 std::span<const std::string> names_of(ObservedSet) {
-  static const std::vector<std::string> names = {"raycast", "frustum", "all"};
+  static const std::vector<std::string> names = {"raycast", "projected", "frustum", "all"};
   return names;
 }
 

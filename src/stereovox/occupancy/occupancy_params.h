@@ -22,9 +22,9 @@ enum class OccupancyPreset { literal, corrected, tuned };
 std::span<const std::string> names_of(OccupancyPreset);
 
 // Which voxels a frame observes besides those it hits, with O = 0: those that rays to measured
-// points cross; those inside the field of view, hidden or not; or these and every voxel known
-// already.
-enum class ObservedSet { raycast, frustum, all };
+// points cross, walked ray by ray or seen in the image (free_space.h); those inside the field of
+// view, hidden or not; or these and every voxel known already.
+enum class ObservedSet { raycast, projected, frustum, all };
 std::span<const std::string> names_of(ObservedSet);
 
 struct OccupancyParams {

@@ -51,22 +51,46 @@ Eigen::Matrix3d point_covariance(const StereoErrorModel& model, const RectifiedC
   return covariance;
 }
 
+MeasuringFrame measuring_frame(const StereoErrorModel& model, const RectifiedCamera& camera,
+                               const SE3& T_world_camera) {
+  const PinholeCamera& c = camera.pinhole;
+  MeasuringFrame f;
+  f.fx_px = c.fx_px, f.fy_px = c.fy_px, f.cx_px = c.cx_px, f.cy_px = c.cy_px;
+  f.depth_by_disparity_mpx = c.fx_px * camera.baseline_m;
+  f.variance_x = std::pow(model.sigma_pointing_px / c.fx_px, 2);
+  f.variance_y = std::pow(model.sigma_pointing_px / c.fy_px, 2);
+  // A = (B p / d)^2 is (p z / f)^2.
+  f.variance_z = model.depth_variance == DepthVariance::printed ? f.variance_x : 0.0;
+  f.min_sigma_px = model.min_sigma_disparity_px;
+  f.is_sigma_a_variance = model.noise == NoiseReading::printed;
+  f.R_world_camera = T_world_camera.rotation.toRotationMatrix();
+  const Eigen::Vector3d variances(f.variance_x, f.variance_y, f.variance_z);
+  f.lateral = f.R_world_camera * variances.asDiagonal() * f.R_world_camera.transpose();
+  f.camera_world = T_world_camera.translation;
+  return f;
+}
+
+PointMeasurement measure_point(const MeasuringFrame& frame, const Eigen::Vector2d& pixel,
+                               double disparity_px, double sigma_disparity_px) {
+  const PixelMeasurement m = measure(frame, pixel.x(), pixel.y(), disparity_px,
+                                     disparity_error_px(frame, sigma_disparity_px));
+  PointMeasurement point;
+  point.depth_m = m.depth_m;
+  point.range_m = m.range_m;
+  point.sigma_range_m = std::sqrt(m.variance_range_m2);
+  for (int i = 0; i < 3; ++i) {
+    point.p_world[i] = position_m(frame, m, i);
+    point.ray_world[i] = m.ray[i] * (m.depth_m / m.range_m);
+    for (int j = 0; j < 3; ++j) point.covariance_world(i, j) = covariance_m2(frame, m, i, j);
+  }
+  return point;
+}
+
 PointMeasurement measure_point(const StereoErrorModel& model, const RectifiedCamera& camera,
                                const SE3& T_world_camera, const Eigen::Vector2d& pixel,
                                double disparity_px, double sigma_disparity_px) {
-  const Eigen::Vector3d p_camera = triangulate(camera, pixel.x(), pixel.y(), disparity_px);
-  const Eigen::Matrix3d covariance_camera =
-      point_covariance(model, camera, pixel, disparity_px, sigma_disparity_px);
-  const Eigen::Matrix3d R_world_camera = T_world_camera.rotation.toRotationMatrix();
-
-  PointMeasurement point;
-  point.depth_m = p_camera.z();
-  point.range_m = p_camera.norm();
-  point.sigma_range_m = std::sqrt(variance_along(p_camera / point.range_m, covariance_camera));
-  point.p_world = R_world_camera * p_camera + T_world_camera.translation;
-  point.ray_world = R_world_camera * (p_camera / point.range_m);
-  point.covariance_world = R_world_camera * covariance_camera * R_world_camera.transpose();
-  return point;
+  return measure_point(measuring_frame(model, camera, T_world_camera), pixel, disparity_px,
+                       sigma_disparity_px);
 }
 
 double distance_error_m(DistanceError reading, const PointMeasurement& point,

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 
@@ -51,7 +53,69 @@ Eigen::Matrix3d point_covariance(const StereoErrorModel& model, const RectifiedC
                                  const Eigen::Vector2d& pixel, double disparity_px,
                                  double sigma_disparity_px);
 
+// What measuring the points of a frame needs of its camera, pose and error model: with the ray
+// e = R (a, b, 1)^T through a pixel and z = f B / d, the point is z e from the camera and its
+// covariance z^2 (lateral + (m / d)^2 e e^T), which is eq. (6) turned into the world.
+struct MeasuringFrame {
+  double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0;
+  double depth_by_disparity_mpx = 0;      // f B
+  double variance_x = 0, variance_y = 0;  // of a and b: (p / f)^2
+  double variance_z = 0;                  // what DepthVariance::printed adds
+  double min_sigma_px = 0;                // floor of m
+  bool is_sigma_a_variance = false;       // NoiseReading::printed
+  Eigen::Matrix3d R_world_camera, lateral;
+  Eigen::Vector3d camera_world;
+};
+
+MeasuringFrame measuring_frame(const StereoErrorModel& model, const RectifiedCamera& camera,
+                               const SE3& T_world_camera);
+
+// m of eq. (3) for a disparity with this standard deviation, in pixels.
+inline double disparity_error_px(const MeasuringFrame& f, double sigma_disparity_px) {
+  const double floored_px = std::max(sigma_disparity_px, f.min_sigma_px);
+  return f.is_sigma_a_variance ? std::sqrt(floored_px) : floored_px;
+}
+
+// What one pixel measures, as plain numbers. Written once for one pixel and for many at a time:
+// every operation is exact to the last bit whatever the instructions.
+struct PixelMeasurement {
+  double depth_m, range_m, variance_range_m2;
+  double ray[3];     // e, whose length is range / depth
+  double ray_error;  // m / d
+};
+
+[[gnu::always_inline]] inline PixelMeasurement measure(const MeasuringFrame& f, double u_px,
+                                                       double v_px, double disparity_px,
+                                                       double error_px) {
+  const double a = (u_px - f.cx_px) / f.fx_px, b = (v_px - f.cy_px) / f.fy_px;
+  const double inverse_disparity = 1.0 / disparity_px;
+  const double length2 = (a * a + b * b) + 1.0;
+
+  PixelMeasurement m;
+  m.depth_m = f.depth_by_disparity_mpx * inverse_disparity;
+  m.range_m = m.depth_m * std::sqrt(length2);
+  m.ray_error = error_px * inverse_disparity;
+  const double lateral = ((f.variance_x * a * a + f.variance_y * b * b) + f.variance_z) / length2;
+  m.variance_range_m2 = m.depth_m * m.depth_m * (lateral + m.ray_error * m.ray_error * length2);
+  for (int k = 0; k < 3; ++k)
+    m.ray[k] = f.R_world_camera(k, 0) * a + (f.R_world_camera(k, 1) * b + f.R_world_camera(k, 2));
+  return m;
+}
+
+// Its coordinate along axis k of the world, and the variance of that.
+[[gnu::always_inline]] inline double position_m(const MeasuringFrame& f, const PixelMeasurement& m,
+                                                int k) {
+  return m.depth_m * m.ray[k] + f.camera_world[k];
+}
+[[gnu::always_inline]] inline double covariance_m2(const MeasuringFrame& f,
+                                                   const PixelMeasurement& m, int i, int j) {
+  return m.depth_m * m.depth_m *
+         (f.lateral(i, j) + m.ray_error * m.ray_error * (m.ray[i] * m.ray[j]));
+}
+
 // The point with its errors in world axes. Disparity and sigma must be positive and finite.
+PointMeasurement measure_point(const MeasuringFrame& frame, const Eigen::Vector2d& pixel,
+                               double disparity_px, double sigma_disparity_px);
 PointMeasurement measure_point(const StereoErrorModel& model, const RectifiedCamera& camera,
                                const SE3& T_world_camera, const Eigen::Vector2d& pixel,
                                double disparity_px, double sigma_disparity_px);

@@ -31,7 +31,17 @@ struct VoxelEvidence {
     smallest = std::min(smallest, evidence);
     points_inside += is_inside ? 1 : 0;
     exact_points += is_exact && evidence > 0.0F ? 1 : 0;
-    ++count_of_level[static_cast<std::size_t>(std::lround(evidence * (kLevels - 1)))];
+    ++count_of_level[static_cast<std::size_t>(level_of(evidence))];
+  }
+  // The nearest level of an evidence in [0, 1].
+  [[gnu::always_inline]] static int level_of(float evidence) {
+    return static_cast<int>(evidence * (kLevels - 1) + 0.5F);
+  }
+  // All that unions by rank ask for. `level` is that of some evidence.
+  void add_level(int level, bool is_inside, bool is_exact) {
+    points_inside += is_inside ? 1 : 0;
+    exact_points += is_exact ? 1 : 0;
+    ++count_of_level[static_cast<std::size_t>(level)];
   }
 };
 

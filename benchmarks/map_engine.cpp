@@ -1,0 +1,370 @@
+// The map engine beside OctoMap: the same frames of the same scene through both, in one run.
+//
+//   map_engine [--frames N] [--step N] [--voxel M] [--pixels N] [--threads N] [--depth clean|noisy]
+//              [--only NAME] [--no-accuracy] [--set occupancy parameter=value]...
+//
+// Without options: 5 and 10 cm, all pixels and every fourth, one and two threads, clean and noisy
+// depth. CPU time counts all threads; the machine may do other work, so compare CPU times.
+#include <fmt/format.h>
+#include <octomap/octomap.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <ctime>
+#include <functional>
+
+#include "map_engine_world.h"
+#include "stereovox/core/grid_geometry.h"
+#include "stereovox/occupancy/frame_view.h"
+#include "stereovox/occupancy/integrate.h"
+#include "stereovox/occupancy/map_queries.h"
+
+namespace stereovox::bench {
+namespace {
+
+enum class State { unknown, free, occupied };
+using StateAt = std::function<State(const Eigen::Vector3i&)>;
+
+struct Options {
+  int frames = 20, step = 10;  // of the drive, every `step`-th
+  std::vector<double> voxels_m = {0.05, 0.1};
+  std::vector<int> pixel_steps = {1, 4}, threads = {1, 2};
+  std::vector<std::string> depths = {"clean", "noisy"};
+  std::vector<std::string> only;
+  std::vector<std::string> settings;
+  bool has_truth = true;  // without, no accuracy is measured
+};
+
+struct Case {
+  double voxel_size_m = 0.05;
+  int pixel_step = 1, threads = 1;
+  Depth depth = Depth::clean;
+};
+
+double clock_ms(clockid_t clock) {
+  constexpr double kMsPerS = 1e3, kMsPerNs = 1e-6;
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) * kMsPerS + static_cast<double>(now.tv_nsec) * kMsPerNs;
+}
+
+double quantile(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(share * double(values.size())))];
+}
+
+// The compiler must not drop the loop that counted this.
+void keep(std::int64_t count) {
+  static volatile std::int64_t kept = 0;
+  kept = count;
+}
+
+struct Times {
+  std::vector<double> cpu_ms, wall_ms;
+};
+
+template <class Body>
+void time(Times& times, Body body) {
+  const double cpu = clock_ms(CLOCK_PROCESS_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
+  body();
+  times.cpu_ms.push_back(clock_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu);
+  times.wall_ms.push_back(clock_ms(CLOCK_MONOTONIC) - wall);
+}
+
+struct Accuracy {
+  double free_recall = 0, occupied_recall = 0, near_recall = 0, thin_recall = 0, precision = 0;
+};
+
+bool is_occupied_near(const StateAt& state, const Eigen::Vector3i& voxel) {
+  Eigen::Vector3i step;
+  for (step.x() = -1; step.x() <= 1; ++step.x())
+    for (step.y() = -1; step.y() <= 1; ++step.y())
+      for (step.z() = -1; step.z() <= 1; ++step.z())
+        if (state(voxel + step) == State::occupied) return true;
+  return false;
+}
+
+struct Share {
+  std::int64_t of = 0, all = 0;
+  void add(bool counts) {
+    of += counts ? 1 : 0;
+    ++all;
+  }
+  double value() const { return all == 0 ? 0.0 : double(of) / double(all); }
+};
+
+// Free recall: of the voxels without a solid that a ray crossed. Occupied recall: of the voxels
+// that hold the end of a ray; `near` counts an occupied voxel among the 26 around. Precision: of
+// the occupied voxels those that, grown by half a voxel, touch a solid.
+Accuracy accuracy_of(const Truth& truth, const StateAt& state) {
+  Share free, occupied, near, thin, precise;
+  Eigen::Vector3i place;
+  for (place.z() = 0; place.z() < truth.size.z(); ++place.z())
+    for (place.y() = 0; place.y() < truth.size.y(); ++place.y())
+      for (place.x() = 0; place.x() < truth.size.x(); ++place.x()) {
+        const Eigen::Vector3i voxel = truth.low + place;
+        const std::uint8_t what = truth.at(voxel);
+        const State found = state(voxel);
+        if (what & Truth::kHit) {
+          occupied.add(found == State::occupied);
+          near.add(is_occupied_near(state, voxel));
+          if (what & Truth::kThin) thin.add(found == State::occupied);
+        } else if ((what & Truth::kCrossed) && !(what & Truth::kSolid)) {
+          free.add(found == State::free);
+        }
+        if (found == State::occupied) precise.add((what & Truth::kNearSolid) != 0);
+      }
+  return {free.value(), occupied.value(), near.value(), thin.value(), precise.value()};
+}
+
+struct Result {
+  std::string name;
+  Times times;
+  double bytes_per_voxel = 0, look_up_ns = 0, ray_us = 0;
+  Accuracy accuracy;
+};
+
+void print(const Case& c, const Result& r, double octomap_ms) {
+  const double cpu_ms = quantile(r.times.cpu_ms, 0.5);
+  fmt::print(
+      "{:>4.0f} {:>5} {:>6} {:>3} {:<18} {:>8.1f} {:>8.1f} {:>8.1f} {:>7.1f} {:>6.1f} {:>6.0f} "
+      "{:>6.2f}  {:.3f} {:.3f} {:.3f} {:.3f} {:.3f}\n",
+      c.voxel_size_m * 1e2, c.pixel_step, c.depth == Depth::clean ? "clean" : "noisy", c.threads,
+      r.name, cpu_ms, quantile(r.times.cpu_ms, 0.95), quantile(r.times.wall_ms, 0.5),
+      octomap_ms / cpu_ms, r.bytes_per_voxel, r.look_up_ns, r.ray_us, r.accuracy.free_recall,
+      r.accuracy.occupied_recall, r.accuracy.near_recall, r.accuracy.thin_recall,
+      r.accuracy.precision);
+  std::fflush(stdout);
+}
+
+void print_header() {
+  fmt::print("{:>4} {:>5} {:>6} {:>3} {:<18} {:>8} {:>8} {:>8} {:>7} {:>6} {:>6} {:>6}  {}\n", "cm",
+             "px", "depth", "thr", "engine", "cpu ms", "p95", "wall ms", "OctoMap", "B/vox", "ns",
+             "ray us", "free  occ   near  thin  precision");
+}
+
+// A linear congruential generator is enough to scatter queries.
+std::vector<Eigen::Vector3d> random_places(int count) {
+  std::uint64_t state = 12345;
+  const auto next = [&] {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<double>(state >> 11) * 0x1p-53;
+  };
+  std::vector<Eigen::Vector3d> places;
+  for (int i = 0; i < count; ++i) places.emplace_back(16.0 * next(), 12.0 * next(), 2.8 * next());
+  return places;
+}
+
+template <class LookUp>
+double look_up_ns(LookUp look_up) {
+  constexpr int kQueries = 1'000'000;
+  constexpr double kNsPerMs = 1e6;
+  const std::vector<Eigen::Vector3d> places = random_places(kQueries);
+  std::int64_t occupied = 0;
+  Times times;
+  for (int round = 0; round < 3; ++round)
+    time(times, [&] {
+      for (const Eigen::Vector3d& p : places) occupied += look_up(p) == State::occupied ? 1 : 0;
+    });
+  keep(occupied);
+  return quantile(times.cpu_ms, 0.5) * kNsPerMs / kQueries;
+}
+
+// Rays into all directions from where the camera was, up to kMaxRange_m.
+template <class Cast>
+double ray_us(const std::vector<Frame>& frames, Cast cast) {
+  constexpr int kRays = 20'000;
+  constexpr double kUsPerMs = 1e3;
+  const std::vector<Eigen::Vector3d> targets = random_places(kRays);
+  std::int64_t hits = 0;
+  Times times;
+  for (int round = 0; round < 3; ++round)
+    time(times, [&] {
+      for (std::size_t i = 0; i < targets.size(); ++i) {
+        const Eigen::Vector3d& from = frames[i % frames.size()].T_world_camera.translation;
+        hits += cast(from, Eigen::Vector3d((targets[i] - from).normalized())) ? 1 : 0;
+      }
+    });
+  keep(hits);
+  return quantile(times.cpu_ms, 0.5) * kUsPerMs / kRays;
+}
+
+octomap::Pointcloud points_of(const Frame& frame, const Case& c) {
+  const cv::Mat1f& disparity = frame.seen(c.depth).disparity_px;
+  octomap::Pointcloud points;
+  for (int v = first_sample(c.pixel_step); v < disparity.rows; v += c.pixel_step)
+    for (int u = first_sample(c.pixel_step); u < disparity.cols; u += c.pixel_step) {
+      if (disparity(v, u) == 0.0F) continue;
+      const Eigen::Vector3f p =
+          (frame.T_world_camera * triangulate(camera(), u, v, double(disparity(v, u))))
+              .cast<float>();
+      points.push_back(p.x(), p.y(), p.z());
+    }
+  return points;
+}
+
+octomap::point3d octomap_point(const Eigen::Vector3d& p) {
+  return {float(p.x()), float(p.y()), float(p.z())};
+}
+
+Result run_octomap(const Case& c, const std::vector<Frame>& frames, const Truth& truth) {
+  octomap::OcTree tree(c.voxel_size_m);
+  Result result{.name = "OctoMap", .times = {}, .accuracy = {}};
+  for (const Frame& frame : frames) {
+    const octomap::Pointcloud points = points_of(frame, c);
+    const octomap::point3d origin = octomap_point(frame.T_world_camera.translation);
+    time(result.times, [&] { tree.insertPointCloud(points, origin); });
+  }
+  const auto state_at = [&](const Eigen::Vector3d& p) {
+    const octomap::OcTreeNode* const node = tree.search(p.x(), p.y(), p.z());
+    if (node == nullptr) return State::unknown;
+    return tree.isNodeOccupied(node) ? State::occupied : State::free;
+  };
+  std::int64_t known = 0;
+  const auto voxel_state = [&](const Eigen::Vector3i& voxel) {
+    return state_at(voxel_center_of(c.voxel_size_m, voxel));
+  };
+  result.accuracy = accuracy_of(truth, voxel_state);
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+    const auto side = static_cast<std::int64_t>(std::lround(leaf.getSize() / c.voxel_size_m));
+    known += side * side * side;
+  }
+  result.bytes_per_voxel = static_cast<double>(tree.memoryUsage()) / static_cast<double>(known);
+  result.look_up_ns = look_up_ns(state_at);
+  result.ray_us = ray_us(frames, [&](const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
+    octomap::point3d end;
+    return tree.castRay(octomap_point(from), octomap_point(way), end, true, kMaxRange_m);
+  });
+  return result;
+}
+
+Result run_ours(const std::string& name, OccupancyParams params, const Case& c,
+                const std::vector<Frame>& frames, const Truth& truth) {
+  params.voxel_size_m = c.voxel_size_m;
+  params.pixel_step = params.ray_step_px = c.pixel_step;
+  VoxelMap map(c.voxel_size_m);
+  Result result{.name = name, .times = {}, .accuracy = {}};
+  constexpr std::int64_t kFrame_ns = 200'000'000;
+  for (const Frame& frame : frames)
+    time(result.times, [&] {
+      integrate(frame.seen(c.depth), camera(), frame.T_world_camera, frame.number * kFrame_ns,
+                params, c.threads, map);
+    });
+  const auto state_of = [](const Voxel& voxel) {
+    if (!is_known(voxel)) return State::unknown;
+    return voxel.state > 0.5F ? State::occupied : State::free;
+  };
+  result.accuracy =
+      accuracy_of(truth, [&](const Eigen::Vector3i& voxel) { return state_of(map.at(voxel)); });
+  result.bytes_per_voxel =
+      static_cast<double>(map.memory_bytes()) / static_cast<double>(map.known_voxel_count());
+  const MapQueries queries(map);
+  result.ray_us = ray_us(frames, [&](const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
+    return queries.cast_ray(from, way, kMaxRange_m).has_value();
+  });
+  result.look_up_ns = look_up_ns([&](const Eigen::Vector3d& p) {
+    return state_of(map.at(voxel_index_of(c.voxel_size_m, p)));
+  });
+  return result;
+}
+
+// The limits of the scene: everything within the range of the frames counts.
+Settings scene_limits() {
+  return {{"max_depth_m", "8"},
+          {"max_clearing_m", "8"},
+          {"min_height_m", "-1"},
+          {"max_height_m", "3.5"}};
+}
+
+// The model of OctoMap in this engine: the voxel that holds an end point is hit, whatever its
+// error, the voxels that rays cross are free.
+Settings log_odds_settings() {
+  return {{"observation.type", "point"},   {"union.type", "rank"},
+          {"union.quantile", "0"},         {"density.lambda", "0"},
+          {"update.type", "log_odds"},     {"free_margin_sigmas", "0"},
+          {"max_sigma_half_voxels", "30"}, {"observed_set", "projected"}};
+}
+
+struct Engine {
+  std::string name;
+  Settings settings;
+};
+
+std::vector<Engine> engines() {
+  return {{"log_odds", log_odds_settings()},
+          {"corrected", {{"preset", "corrected"}, {"observed_set", "projected"}}},
+          {"tuned", {{"preset", "tuned"}, {"observed_set", "projected"}}}};
+}
+
+Settings parsed(const std::vector<std::string>& words) {
+  Settings settings;
+  for (const std::string& word : words)
+    settings.emplace_back(word.substr(0, word.find('=')), word.substr(word.find('=') + 1));
+  return settings;
+}
+
+void run_case(const Options& options, const Case& c, const std::vector<Frame>& frames,
+              const Truth& truth) {
+  const auto is_wanted = [&](const std::string& name) {
+    return options.only.empty() || std::ranges::count(options.only, name) > 0;
+  };
+  double octomap_ms = 0.0;
+  if (is_wanted("OctoMap")) {
+    const Result octomap = run_octomap(c, frames, truth);
+    octomap_ms = quantile(octomap.times.cpu_ms, 0.5);
+    print(c, octomap, octomap_ms);
+  }
+  for (const auto& [name, settings] : engines()) {
+    if (!is_wanted(name)) continue;
+    OccupancyParams params;
+    apply_settings(settings, params);
+    apply_settings(scene_limits(), params);
+    apply_settings(parsed(options.settings), params);
+    print(c, run_ours(name, params, c, frames, truth), octomap_ms);
+  }
+}
+
+Options parse(int argc, char** argv) {
+  Options options;
+  CLI::App app("the map engine beside OctoMap");
+  app.add_option("--frames", options.frames);
+  app.add_option("--step", options.step);
+  app.add_option("--voxel", options.voxels_m);
+  app.add_option("--pixels", options.pixel_steps);
+  app.add_option("--threads", options.threads);
+  app.add_option("--depth", options.depths);
+  app.add_option("--only", options.only);
+  app.add_option("--set", options.settings);
+  app.add_flag("!--no-accuracy", options.has_truth);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::exit(app.exit(error));
+  }
+  return options;
+}
+
+void run(const Options& options) {
+  const std::vector<Box> boxes = office();
+  std::vector<Frame> frames;
+  for (int i = 0; i < options.frames; ++i) frames.push_back(see_office(boxes, i * options.step));
+  print_header();
+  for (const double voxel_m : options.voxels_m) {
+    const Truth truth = truth_of(boxes, options.has_truth ? frames : std::vector<Frame>{}, voxel_m);
+    for (const std::string& depth : options.depths)
+      for (const int pixel_step : options.pixel_steps)
+        for (const int threads : options.threads)
+          run_case(options,
+                   {voxel_m, pixel_step, threads, depth == "clean" ? Depth::clean : Depth::noisy},
+                   frames, truth);
+  }
+}
+
+}  // namespace
+}  // namespace stereovox::bench
+
+int main(int argc, char** argv) {
+  stereovox::bench::run(stereovox::bench::parse(argc, argv));
+  return 0;
+}

@@ -1,0 +1,149 @@
+#include "stereovox/occupancy/map_queries.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "stereovox/core/grid_geometry.h"
+
+namespace stereovox {
+namespace {
+
+// Finds the voxels of a walk: successive ones mostly lie in the same block.
+class NearbyVoxels {
+ public:
+  explicit NearbyVoxels(const VoxelMap& map) : map_(map) {}
+
+  Voxel at(const Eigen::Vector3i& voxel) {
+    const Eigen::Vector3i place = block_of(voxel);
+    if (!has_block_ || place != place_) {
+      place_ = place;
+      block_ = map_.find_block(place);
+      has_block_ = true;
+    }
+    if (block_ == nullptr) return {};
+    return block_->voxels[static_cast<std::size_t>(position_in_block(voxel))];
+  }
+
+ private:
+  const VoxelMap& map_;
+  Eigen::Vector3i place_ = Eigen::Vector3i::Zero();
+  const VoxelBlock* block_ = nullptr;
+  bool has_block_ = false;
+};
+
+// A ray from voxel to voxel (Amanatides and Woo 1987), in voxels.
+class VoxelWalk {
+ public:
+  VoxelWalk(const Eigen::Vector3d& from, const Eigen::Vector3d& unit_direction)
+      : voxel_(from.array().floor().cast<int>()), from_(from), direction_(unit_direction) {
+    for (int axis = 0; axis < 3; ++axis) next_[axis] = next_face(axis);
+  }
+
+  const Eigen::Vector3i& voxel() const { return voxel_; }
+  double entered_at() const { return entered_at_; }
+  void step() {
+    int axis = 0;
+    entered_at_ = next_.minCoeff(&axis);
+    voxel_[axis] += direction_[axis] > 0.0 ? 1 : -1;
+    next_[axis] = next_face(axis);
+  }
+
+ private:
+  double next_face(int axis) const {
+    if (direction_[axis] == 0.0) return std::numeric_limits<double>::infinity();
+    const int face = direction_[axis] > 0.0 ? voxel_[axis] + 1 : voxel_[axis];
+    return (face - from_[axis]) / direction_[axis];
+  }
+
+  Eigen::Vector3i voxel_;
+  Eigen::Vector3d from_, direction_, next_;
+  double entered_at_ = 0.0;
+};
+
+// Squared distance from a point to the box [low, high].
+double distance2(const Eigen::Vector3d& p, const Eigen::Vector3d& low,
+                 const Eigen::Vector3d& high) {
+  return (p - p.cwiseMax(low).cwiseMin(high)).squaredNorm();
+}
+
+}  // namespace
+
+MapQueries::MapQueries(const VoxelMap& map, const QueryParams& params)
+    : map_(map), params_(params) {}
+
+VoxelState MapQueries::state_of(const Voxel& voxel) const {
+  if (!is_known(voxel) || voxel.observations < params_.min_observations) return VoxelState::unknown;
+  return voxel.state > params_.threshold ? VoxelState::occupied : VoxelState::free;
+}
+
+VoxelState MapQueries::state_at(const Eigen::Vector3d& p_world) const {
+  return state_of(map_.at(voxel_index_of(map_.voxel_size_m(), p_world)));
+}
+
+std::vector<VoxelState> MapQueries::states_at(std::span<const Eigen::Vector3d> points_world) const {
+  NearbyVoxels voxels(map_);
+  std::vector<VoxelState> states;
+  states.reserve(points_world.size());
+  for (const Eigen::Vector3d& p : points_world)
+    states.push_back(state_of(voxels.at(voxel_index_of(map_.voxel_size_m(), p))));
+  return states;
+}
+
+bool MapQueries::is_obstacle(VoxelState state) const {
+  if (state == VoxelState::unknown) return params_.unknown == UnknownSpace::is_occupied;
+  return state == VoxelState::occupied;
+}
+
+std::optional<RayHit> MapQueries::cast_ray(const Eigen::Vector3d& from_world,
+                                           const Eigen::Vector3d& direction_world,
+                                           double range_m) const {
+  if (!from_world.allFinite() || !direction_world.allFinite() || direction_world.isZero(0.0) ||
+      !std::isfinite(range_m))
+    throw std::logic_error("cast_ray: start, direction or range is not finite, or no direction");
+  const double size_m = map_.voxel_size_m();
+  NearbyVoxels voxels(map_);
+  for (VoxelWalk walk(from_world / size_m, direction_world.normalized());
+       walk.entered_at() * size_m <= range_m; walk.step()) {
+    const VoxelState state = state_of(voxels.at(walk.voxel()));
+    if (is_obstacle(state)) return RayHit{walk.voxel(), walk.entered_at() * size_m, state};
+  }
+  return std::nullopt;
+}
+
+// `touches`(low, high) says whether the body meets the box of a voxel or of a block.
+template <class Touches>
+bool MapQueries::collides(const Eigen::Vector3d& low_world, const Eigen::Vector3d& high_world,
+                          Touches touches) const {
+  const double size_m = map_.voxel_size_m();
+  // A voxel that only shares its upper face with the body counts: both are closed.
+  const Eigen::Vector3i first = ((low_world / size_m).array().ceil().cast<int>() - 1).matrix();
+  const Eigen::Vector3i last = voxel_index_of(size_m, high_world);
+  NearbyVoxels voxels(map_);
+  Eigen::Vector3i voxel;
+  for (voxel.z() = first.z(); voxel.z() <= last.z(); ++voxel.z())
+    for (voxel.y() = first.y(); voxel.y() <= last.y(); ++voxel.y())
+      for (voxel.x() = first.x(); voxel.x() <= last.x(); ++voxel.x()) {
+        if (!is_obstacle(state_of(voxels.at(voxel)))) continue;
+        const Eigen::Vector3d low = voxel.cast<double>() * size_m;
+        if (touches(low, Eigen::Vector3d(low.array() + size_m))) return true;
+      }
+  return false;
+}
+
+bool MapQueries::box_collides(const Eigen::Vector3d& low_world,
+                              const Eigen::Vector3d& high_world) const {
+  return collides(low_world, high_world,
+                  [](const Eigen::Vector3d&, const Eigen::Vector3d&) { return true; });
+}
+
+bool MapQueries::ball_collides(const Eigen::Vector3d& center_world, double radius_m) const {
+  const Eigen::Array3d center = center_world.array();
+  return collides(center - radius_m, center + radius_m,
+                  [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+                    return distance2(center_world, low, high) <= radius_m * radius_m;
+                  });
+}
+
+}  // namespace stereovox
