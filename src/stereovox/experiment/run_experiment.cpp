@@ -8,6 +8,7 @@
 #include "stereovox/core/parallel.h"
 #include "stereovox/experiment/map_drive.h"
 #include "stereovox/experiment/write_report.h"
+#include "stereovox/simulation/world_file.h"
 
 namespace stereovox {
 namespace {
@@ -34,6 +35,15 @@ RecordingRequest request_of(const ExperimentConfig& config, const Drive& drive) 
                            .pipeline = config.pipeline};
   request.simulation.seed = drive.seed;
   return request;
+}
+
+// Worlds that cannot be read and drives that hit something are refused before hours of work.
+void check_drives(const ExperimentConfig& config, std::span<const Drive> drives) {
+  for (const Drive& drive : drives) {
+    const RecordingRequest request = request_of(config, drive);
+    Simulation(read_world(request.world), request.drive, request.simulation, request.world.string(),
+               1);
+  }
 }
 
 // The rows of one drive: those of an earlier run, or new ones.
@@ -63,6 +73,7 @@ ExperimentResult run_experiment(const ExperimentConfig& config, const fs::path& 
                                 const ExperimentProgress& progress) {
   for (const char* name : {"runs", "maps", "figures"}) fs::create_directories(output / name);
   const std::vector<Drive> drives = drives_of(config);
+  check_drives(config, drives);
   std::vector<std::optional<std::vector<ResultRow>>> rows(drives.size());
   std::atomic<std::size_t> next{0};
   // Drives take very different times, so each thread takes the next one when it is free.
