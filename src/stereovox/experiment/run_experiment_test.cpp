@@ -142,5 +142,19 @@ TEST(ExperimentFile, ThatIsShippedIsValid) {
     EXPECT_NE(world.name, config.development_world);
 }
 
+TEST_F(Experiment, ADriveThatHitsSomethingIsRefusedBeforeAnythingIsRendered) {
+  std::ofstream(folder_ / "blocked.yaml")
+      << room_text().replace(room_text().find("[2.5, 2]"), 8, "[4.5, 2]");
+  write(
+      replaced("worlds: [{file: room.yaml}]", "worlds: [{file: room.yaml}, {file: blocked.yaml}]"));
+  try {
+    run("out");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("blocked.yaml: drive 'main' comes within"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "cache"));
+}
+
 }  // namespace
 }  // namespace stereovox

@@ -102,6 +102,17 @@ Shot dark(Shot shot) {
   return shot;
 }
 
+// A weak pattern: what is left of the texture is hardly more than the noise of a pixel.
+Shot faint(Shot shot, int frame) {
+  constexpr double kContrast = 0.09, kNoise_gray = 1.5;
+  std::mt19937 random(static_cast<unsigned>(1000 + frame));
+  std::normal_distribution<double> noise(0.0, kNoise_gray);
+  for (cv::Mat1b* image : {&shot.pair.left.pixels, &shot.pair.right.pixels})
+    for (std::uint8_t& value : *image)
+      value = cv::saturate_cast<std::uint8_t>(100 + kContrast * value + noise(random));
+  return shot;
+}
+
 // Forward in a gentle curve.
 SE3 on_the_way(int frame) {
   const double s = 0.06 * frame;
@@ -262,6 +273,27 @@ TEST(Odometry, ResultIsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(one[i].T_segment_camera.translation, four[i].T_segment_camera.translation);
     EXPECT_EQ(one[i].covariance, four[i].covariance);
   }
+}
+
+TEST(Odometry, WeakTextureIsTrackedOnHalvedImages) {
+  constexpr int kFrames = 8;
+  constexpr double kWeakTolerance_m = 0.05, kWeakTolerance_rad = 0.02;
+  OdometryParams full_only;
+  full_only.keyframes.coarser_levels = 0;
+  Odometry odometry(kCamera, {}), on_full_images(kCamera, full_only);
+  int lost_on_full_images = 0, halved = 0;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const Shot shot = faint(shot_from(on_the_way(frame), frame), frame);
+    lost_on_full_images += track(on_full_images, shot).status == OdometryStatus::lost ? 1 : 0;
+    const OdometryResult result = track(odometry, shot);
+    ASSERT_EQ(result.status, OdometryStatus::tracked) << frame << ": " << result.reason;
+    halved += result.level > 0 ? 1 : 0;
+    const Vector6d error = error_on_the_way(result, frame);
+    EXPECT_LT(error.head<3>().norm(), kWeakTolerance_m) << frame;
+    EXPECT_LT(error.tail<3>().norm(), kWeakTolerance_rad) << frame;
+  }
+  EXPECT_GT(lost_on_full_images, kFrames / 2);
+  EXPECT_GT(halved, kFrames / 2);
 }
 
 TEST(Odometry, KeepsNoMoreKeyframesThanAllowedAndStillTracks) {

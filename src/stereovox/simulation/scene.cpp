@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <limits>
+#include <mutex>
 #include <new>
 
 #include "stereovox/core/error.h"
@@ -52,14 +53,28 @@ Eigen::Vector3f facing(const Eigen::Vector3f& normal, const Eigen::Vector3f& dir
   return normal.dot(direction) > 0 ? Eigen::Vector3f(-normal.normalized()) : normal.normalized();
 }
 
+// Embree's devices share threads and settings: a scene that is built while another device is made
+// or released can end up empty. Casting rays needs no lock.
+std::mutex& building_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 }  // namespace
 
 struct Scene::Embree {
-  Embree() : device(rtcNewDevice(nullptr)), scene(device ? rtcNewScene(device) : nullptr) {
+  explicit Embree(const TriangleMesh& mesh) {
+    const std::scoped_lock lock(building_mutex());
+    device = rtcNewDevice(nullptr);
+    scene = device != nullptr ? rtcNewScene(device) : nullptr;
     if (scene == nullptr) throw ResourceError("the ray caster cannot be started");
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    add(mesh);
+    if (rtcGetDeviceError(device) != RTC_ERROR_NONE)
+      throw ResourceError("the ray caster cannot take the world");
   }
   ~Embree() {
+    const std::scoped_lock lock(building_mutex());
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
   }
@@ -85,12 +100,11 @@ struct Scene::Embree {
     rtcCommitScene(scene);
   }
 
-  RTCDevice device;
-  RTCScene scene;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
 };
 
-Scene::Scene(const World& world, double time_s)
-    : solids_(world.solids), embree_(std::make_unique<Embree>()) {
+Scene::Scene(const World& world, double time_s) : solids_(world.solids) {
   const auto clothes = std::ranges::find(world.materials, "clothes", &Material::name);
   const int material = static_cast<int>(clothes - world.materials.begin());
   assert(world.people.empty() || clothes != world.materials.end());
@@ -106,7 +120,7 @@ Scene::Scene(const World& world, double time_s)
       all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     solid_of_triangle_.resize(all.triangles.size(), static_cast<int>(i));
   }
-  embree_->add(all);
+  embree_ = std::make_unique<Embree>(all);
 
   first_square_ = world.min_m.array().floor().cast<int>();
   squares_ = world.max_m.array().ceil().cast<int>() - first_square_.array();
