@@ -1,0 +1,76 @@
+// The inner loops of the census matchers, compiled once for AVX2 and once for any machine; both
+// give the same bytes. Plain pointers throughout, so that the code for AVX2 shares nothing that a
+// linker could mistake for code for every machine.
+//
+// A candidate i = 0 ... candidates - 1 of left pixel x stands for disparity max_disparity - i: then
+// the right pixels of consecutive candidates lie side by side.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace stereovox {
+
+inline constexpr int kCensusPlanes = 4;
+inline constexpr int kCensusHalfWidth_px = 4, kCensusHalfHeight_px = 3;
+inline constexpr int kCandidateStep = 32, kMaxCandidates = 256;
+inline constexpr int kMaxHamming = 31;
+// Rows of bytes may be read and written this far beyond their end.
+inline constexpr int kRowSlack = 32;
+// Bytes between the candidates of two pixels in a row of path costs: a wall that no step crosses.
+inline constexpr int kPathWall = 32;
+
+// The centre-symmetric census of one image row: bit b of plane p says whether pixel k = 8 p + b of
+// the upper half of a 9 x 7 window is at least as bright as its mirror image in the lower half.
+struct CensusRow {
+  std::array<std::uint8_t*, kCensusPlanes> planes = {};
+};
+
+// One row of images that semi-global aggregation has reached, and what it keeps from row to row.
+struct SweepRow {
+  int width_px = 0;
+  CensusRow left;
+  CensusRow right;  // candidate i of left pixel x is at x + i
+  std::uint8_t small_penalty = 0;
+  // Of a disparity jump between each pixel and the one before it, and the ones above, above to the
+  // left, above to the right.
+  const std::uint8_t* penalty_beside = nullptr;
+  std::array<const std::uint8_t*, 3> penalty_above = {};
+  // Path costs above their minimum, width x (candidates + kPathWall), for the three paths from
+  // above. Row y keeps pixel x in slot (first_slot + x) mod width: chosen so that the pixel that a
+  // path comes from lies in the same slot, and is overwritten where it is read.
+  std::array<std::uint8_t*, 3> paths_above = {};
+  std::array<int, 3> first_slot = {};
+  std::uint8_t* cost = nullptr;  // width x candidates
+  std::uint8_t* sum = nullptr;   // width x candidates: of path costs, at most 255
+};
+
+// What the best candidate of each pixel of a row is, the first one of equals.
+struct WinnerPointers {
+  std::uint8_t* candidate = nullptr;
+  std::uint8_t* cost = nullptr;    // its sum of path costs
+  std::uint8_t* second = nullptr;  // the smallest sum of candidates that are not its neighbours
+  std::uint8_t* before = nullptr;  // the sum of candidate - 1; 255 for the first
+  std::uint8_t* after = nullptr;   // the sum of candidate + 1; 255 for the last
+};
+
+// Functions that depend on the number of candidates are listed by candidates / kCandidateStep - 1.
+struct CensusKernels {
+  static constexpr int kSizes = kMaxCandidates / kCandidateStep;
+  using Census = void (*)(const std::uint8_t* const* rows, int width_px, const CensusRow& out);
+  using Forward = void (*)(const SweepRow& row);
+  using Backward = void (*)(const SweepRow& row, const WinnerPointers& out);
+
+  // `rows` are the 7 rows about this one, each with 4 more pixels on either side.
+  Census census = nullptr;
+  // Matching costs and the four paths from the left and from above: fills cost and sum.
+  std::array<Forward, kSizes> forward = {};
+  // The path from the right, then the winners.
+  std::array<Backward, kSizes> backward = {};
+};
+
+const CensusKernels& portable_census_kernels();
+const CensusKernels* avx2_census_kernels();  // nullptr on a machine without AVX2
+const CensusKernels& fastest_census_kernels();
+
+}  // namespace stereovox

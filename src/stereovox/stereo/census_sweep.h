@@ -1,0 +1,73 @@
+// Semi-global matching on a census cost, row by row from top to bottom: five paths (from the left,
+// the three from above, from the right) are known when a row is left, so only rows are kept in
+// memory, never a volume. After Hirschmueller (PAMI 2008); the single sweep is the one of OpenCV's
+// MODE_SGBM, the cost the one of libSGM (centre-symmetric census, 9 x 7).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "stereovox/core/frame.h"
+#include "stereovox/stereo/census_kernels.h"
+
+namespace stereovox {
+
+struct SweepParams {
+  int min_disparity_px = 0;
+  int candidates = 64;  // a multiple of kCandidateStep, up to kMaxCandidates
+  int small_penalty = 0;
+  std::array<std::uint8_t, 256> large_penalty = {};  // by the brightness step between two pixels
+
+  int max_disparity_px() const { return min_disparity_px + candidates - 1; }
+};
+
+// What a matcher knows of a row's pixels: see WinnerPointers.
+struct WinnerRow {
+  std::vector<std::uint8_t> candidate, cost, second, before, after;
+
+  explicit WinnerRow(int width_px);
+  WinnerPointers pointers();
+  bool operator==(const WinnerRow&) const = default;
+};
+
+// Both images with the borders that a census window needs, repeated from the edge.
+struct CensusPair {
+  cv::Mat1b left, right;  // padded
+  int width_px = 0, height_px = 0;
+};
+CensusPair pad_for_census(const RectifiedPair& pair);
+
+class CensusSweep {
+ public:
+  // Starts with `first_row`, as if nothing were above it. Refers to `pair`.
+  CensusSweep(const CensusPair& pair, const SweepParams& params, int first_row,
+              const CensusKernels& kernels);
+
+  void skip_row();                  // the paths pass, nobody wins
+  void next_row(WinnerRow& found);  // `found` has the images' width
+
+ private:
+  void enter_row();
+  void read_census();
+  void read_penalties();
+  void clear_entries();
+
+  const CensusPair& pair_;
+  const SweepParams params_;
+  const CensusKernels& kernels_;
+  const std::size_t size_index_;  // of the kernels for this number of candidates
+  int y_;
+  // Matrices only because they are aligned; each is one row.
+  cv::Mat1b left_census_, right_census_, cost_, sum_, penalties_;
+  std::array<cv::Mat1b, 3> paths_above_;
+  SweepRow row_;
+};
+
+// The same winners of rows [first_row, end_row), plainly: every cost and path in a volume, one
+// number at a time. The oracle of the tests.
+std::vector<WinnerRow> sweep_reference(const RectifiedPair& pair, const SweepParams& params,
+                                       int first_row, int end_row);
+
+}  // namespace stereovox

@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+
+#include "stereovox/stereo/census_sweep.h"
+
+namespace stereovox {
+namespace {
+
+constexpr int kFarthest = 255;  // sums end here
+
+int pixel(const cv::Mat1b& image, int x, int y) {
+  return image(std::clamp(y, 0, image.rows - 1), std::clamp(x, 0, image.cols - 1));
+}
+
+// A pixel outside the image has the census of the nearest one inside.
+std::uint32_t census(const cv::Mat1b& image, int x, int y) {
+  x = std::clamp(x, 0, image.cols - 1);
+  std::uint32_t word = 0;
+  int k = 0;
+  for (int dy = -kCensusHalfHeight_px; dy <= 0; ++dy)
+    for (int dx = -kCensusHalfWidth_px; dx <= kCensusHalfWidth_px; ++dx) {
+      if (dy == 0 && dx >= 0) break;
+      const bool is_set = pixel(image, x + dx, y + dy) >= pixel(image, x - dx, y - dy);
+      word |= static_cast<std::uint32_t>(is_set) << k++;
+    }
+  return word;
+}
+
+using Costs = std::vector<int>;  // of the candidates of one pixel
+
+class Reference {
+ public:
+  Reference(const RectifiedPair& pair, const SweepParams& params, int first_row, int end_row)
+      : left_(pair.left.pixels),
+        right_(pair.right.pixels),
+        params_(params),
+        first_row_(first_row),
+        end_row_(end_row) {}
+
+  std::vector<WinnerRow> winners() const {
+    std::vector<std::vector<Costs>> sums(end_row_ - first_row_,
+                                         std::vector<Costs>(left_.cols, Costs(params_.candidates)));
+    for (const auto& [dx, dy] : {std::pair{-1, 0}, {0, -1}, {-1, -1}, {1, -1}, {1, 0}})
+      add_path(dx, dy, sums);
+    std::vector<WinnerRow> rows;
+    for (const std::vector<Costs>& row : sums) rows.push_back(winners_of(row));
+    return rows;
+  }
+
+ private:
+  int matching_cost(int x, int y, int candidate) const {
+    const int x_right = x - params_.max_disparity_px() + candidate;
+    return std::popcount(census(left_, x, y) ^ census(right_, x_right, y));
+  }
+
+  // Each pixel's path comes from (x + dx, y + dy).
+  void add_path(int dx, int dy, std::vector<std::vector<Costs>>& sums) const {
+    std::vector<std::vector<Costs>> path(sums.size(), std::vector<Costs>(left_.cols));
+    for (int y = first_row_; y < end_row_; ++y)
+      for (int i = 0; i < left_.cols; ++i) {
+        const int x = dx > 0 && dy == 0 ? left_.cols - 1 - i : i;
+        const bool starts = x + dx < 0 || x + dx >= left_.cols || y + dy < first_row_;
+        const Costs before =
+            starts ? Costs(params_.candidates, 0) : path[y + dy - first_row_][x + dx];
+        const int step = std::abs(pixel(left_, x, y) - pixel(left_, x + dx, y + dy));
+        path[y - first_row_][x] = next_on_path(before, x, y, params_.large_penalty[step]);
+        for (int c = 0; c < params_.candidates; ++c)
+          sums[y - first_row_][x][c] += path[y - first_row_][x][c];
+      }
+  }
+
+  // The recursion of semi-global matching, eq. (13) of Hirschmueller (PAMI 2008).
+  Costs next_on_path(const Costs& before, int x, int y, int large_penalty) const {
+    const int smallest = std::ranges::min(before), count = params_.candidates;
+    Costs next(count);
+    for (int c = 0; c < count; ++c) {
+      int best = std::min(before[c], smallest + large_penalty);
+      if (c > 0) best = std::min(best, before[c - 1] + params_.small_penalty);
+      if (c + 1 < count) best = std::min(best, before[c + 1] + params_.small_penalty);
+      next[c] = matching_cost(x, y, c) + best - smallest;
+    }
+    return next;
+  }
+
+  WinnerRow winners_of(const std::vector<Costs>& sums) const {
+    WinnerRow row(left_.cols);
+    const auto limited = [](int sum) {
+      return static_cast<std::uint8_t>(std::min(sum, kFarthest));
+    };
+    for (int x = 0; x < left_.cols; ++x) {
+      Costs sum = sums[x];
+      for (int& s : sum) s = limited(s);
+      const int count = params_.candidates;
+      const int best = static_cast<int>(std::ranges::min_element(sum) - sum.begin());
+      int second = kFarthest;
+      for (int c = 0; c < count; ++c)
+        if (std::abs(c - best) > 1) second = std::min(second, sum[c]);
+      row.candidate[x] = static_cast<std::uint8_t>(best);
+      row.cost[x] = limited(sum[best]);
+      row.second[x] = limited(second);
+      row.before[x] = limited(best > 0 ? sum[best - 1] : kFarthest);
+      row.after[x] = limited(best + 1 < count ? sum[best + 1] : kFarthest);
+    }
+    return row;
+  }
+
+  const cv::Mat1b left_, right_;
+  const SweepParams params_;
+  const int first_row_, end_row_;
+};
+
+}  // namespace
+
+std::vector<WinnerRow> sweep_reference(const RectifiedPair& pair, const SweepParams& params,
+                                       int first_row, int end_row) {
+  return Reference(pair, params, first_row, end_row).winners();
+}
+
+}  // namespace stereovox
