@@ -19,7 +19,8 @@ double slanted(int u, int v) { return 20.0 + 0.03 * u - 0.04 * v; }
 class EveryMatcher : public testing::TestWithParam<MatcherParams> {};
 
 INSTANTIATE_TEST_SUITE_P(Matchers, EveryMatcher,
-                         testing::Values(SemiGlobalMatchingParams{}, BlockMatchingParams{}),
+                         testing::Values(SemiGlobalMatchingParams{}, BlockMatchingParams{},
+                                         CensusSgmParams{}),
                          [](const auto& matcher) {
                            return std::visit([](const auto& p) { return std::string(p.kName); },
                                              matcher.param);
