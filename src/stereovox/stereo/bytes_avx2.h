@@ -24,7 +24,10 @@ struct BytesAvx2 {
 
   static V add(V a, V b) { return _mm256_add_epi8(a, b); }
   static V add_saturated(V a, V b) { return _mm256_adds_epu8(a, b); }
+  static V subtract_saturated(V a, V b) { return _mm256_subs_epu8(a, b); }
   static V subtract(V a, V b) { return _mm256_sub_epi8(a, b); }
+  // (a + b + 1) / 2
+  static V mean(V a, V b) { return _mm256_avg_epu8(a, b); }
   static V min(V a, V b) { return _mm256_min_epu8(a, b); }
   static V either(V a, V b) { return _mm256_or_si256(a, b); }
   static V both(V a, V b) { return _mm256_and_si256(a, b); }

@@ -25,7 +25,10 @@ struct BytesPortable {
     const V sum = a + b;
     return sum | V(sum < a);
   }
+  static V subtract_saturated(V a, V b) { return a - min(a, b); }
   static V subtract(V a, V b) { return a - b; }
+  // (a + b + 1) / 2
+  static V mean(V a, V b) { return (a | b) - ((a ^ b) >> 1); }
   static V min(V a, V b) { return a < b ? a : b; }
   static V either(V a, V b) { return a | b; }
   static V both(V a, V b) { return a & b; }

@@ -18,8 +18,26 @@ struct ThreeOut {
 };
 constexpr ThreeOut kThreeOut;
 
+inline constexpr int kLevelSlope = 128;
+
+// Change of brightness along the row, smoothed across it, as kLevelSlope plus what is left of it
+// after clipping.
 template <class S>
-void census_row(const std::uint8_t* const* rows, int width_px, const CensusRow& out) {
+typename S::V slope(const std::uint8_t* const* rows, int x) {
+  using V = typename S::V;
+  const auto smooth = [&](int column) {
+    const V above = S::load(rows[kCensusHalfHeight_px - 1] + column);
+    const V below = S::load(rows[kCensusHalfHeight_px + 1] + column);
+    return S::mean(S::load(rows[kCensusHalfHeight_px] + column), S::mean(above, below));
+  };
+  const V before = smooth(x - 1), after = smooth(x + 1), limit = S::spread(kMaxSlope_gray);
+  const V rise = S::min(S::subtract_saturated(after, before), limit);
+  const V fall = S::min(S::subtract_saturated(before, after), limit);
+  return S::subtract(S::add(S::spread(kLevelSlope), rise), fall);
+}
+
+template <class S>
+void census_row(const std::uint8_t* const* rows, int width_px, const PixelRow& out) {
   using V = typename S::V;
   for (int x = 0; x < width_px; x += S::kSize) {
     V plane = S::spread(0);
@@ -30,20 +48,21 @@ void census_row(const std::uint8_t* const* rows, int width_px, const CensusRow& 
       const auto bit = static_cast<std::uint8_t>(1 << (k % 8));
       plane = S::either(plane, S::both(S::is_at_least(upper, lower), S::spread(bit)));
       ++k;
-      if (k % 8 != 0 && k != kMaxHamming) return;
+      if (k % 8 != 0 && k != kCensusBits) return;
       S::store(out.planes[(k - 1) / 8] + x, plane);
       plane = S::spread(0);
     };
     for (int dy = -kCensusHalfHeight_px; dy < 0; ++dy)
       for (int dx = -kCensusHalfWidth_px; dx <= kCensusHalfWidth_px; ++dx) take(dx, dy);
     for (int dx = -kCensusHalfWidth_px; dx < 0; ++dx) take(dx, 0);
+    S::store(out.planes[kSlopePlane] + x, slope<S>(rows, x));
   }
 }
 
 // Hamming distance of two census words that lie in four planes of bytes. Carry-save adders bring
 // the four planes to one of weight 1 and two of weight 2 before the ones are counted.
 template <class S>
-typename S::V hamming(const typename S::V (&left)[kCensusPlanes], const CensusRow& right, int at) {
+typename S::V hamming(const typename S::V (&left)[kPlanes], const PixelRow& right, int at) {
   using V = typename S::V;
   const V a = S::differ(left[0], S::load(right.planes[0] + at));
   const V b = S::differ(left[1], S::load(right.planes[1] + at));
@@ -54,6 +73,21 @@ typename S::V hamming(const typename S::V (&left)[kCensusPlanes], const CensusRo
   const V carry_abc = S::either(S::both(a, b), S::both(c, a_or_b));
   const V twos = S::add(S::count_ones(carry_abc), S::count_ones(S::both(abc, d)));
   return S::add(S::count_ones(S::differ(abc, d)), S::add(twos, twos));
+}
+
+template <class S>
+typename S::V slope_cost(typename S::V left, const PixelRow& right, int at) {
+  using V = typename S::V;
+  const V there = S::load(right.planes[kSlopePlane] + at);
+  const V difference =
+      S::either(S::subtract_saturated(left, there), S::subtract_saturated(there, left));
+  static_assert(kSlopeWeight == 2);
+  return S::min(S::add_saturated(difference, difference), S::spread(kMaxSlopeCost));
+}
+
+template <class S>
+typename S::V difference(const typename S::V (&left)[kPlanes], const PixelRow& right, int at) {
+  return S::mean(hamming<S>(left, right, at), slope_cost<S>(left[kSlopePlane], right, at));
 }
 
 // The costs of all candidates of one pixel on a path, and their smallest.
@@ -112,6 +146,27 @@ void step_from_above(const typename S::V (&cost)[N], typename S::V small, typena
 }
 
 template <class S, int kCandidates>
+void differences_row(int width_px, const PixelRow& left, const PixelRow& right, std::uint8_t* out) {
+  constexpr int N = kCandidates / S::kSize;
+  using V = typename S::V;
+  V before[N], here[N];
+  for (int x = 0; x <= width_px; ++x) {
+    V words[kPlanes], after[N];
+    const int column = x < width_px ? x : width_px - 1;
+    for (int p = 0; p < kPlanes; ++p) words[p] = S::spread(left.planes[p][column]);
+    for (int n = 0; n < N; ++n) {
+      after[n] = difference<S>(words, right, column + n * S::kSize);
+      if (x == 0) before[n] = here[n] = after[n];
+      if (x > 0)
+        S::store(out + (x - 1) * kCandidates + n * S::kSize,
+                 S::mean(here[n], S::mean(before[n], after[n])));
+      before[n] = here[n];
+      here[n] = after[n];
+    }
+  }
+}
+
+template <class S, int kCandidates>
 void sweep_forward(const SweepRow& row) {
   constexpr int N = kCandidates / S::kSize;
   using V = typename S::V;
@@ -119,12 +174,13 @@ void sweep_forward(const SweepRow& row) {
   PathState<S, N> from_left = start_of_path<S, N>();
   std::array<int, 3> slot = row.first_slot;
   for (int x = 0; x < row.width_px; ++x) {
-    V left[kCensusPlanes], cost[N], sum[N];
-    for (int p = 0; p < kCensusPlanes; ++p) left[p] = S::spread(row.left.planes[p][x]);
-    std::uint8_t* const costs = row.cost + x * kCandidates;
+    V cost[N], sum[N];
     for (int n = 0; n < N; ++n) {
-      cost[n] = hamming<S>(left, row.right, x + n * S::kSize);
-      S::store(costs + n * S::kSize, cost[n]);
+      const int at = x * kCandidates + n * S::kSize;
+      cost[n] =
+          S::mean(S::load(row.differences[1] + at),
+                  S::mean(S::load(row.differences[0] + at), S::load(row.differences[2] + at)));
+      S::store(row.cost + at, cost[n]);
     }
     step_along_row<S, N>(cost, small, S::spread(row.penalty_beside[x]), from_left);
     for (int n = 0; n < N; ++n) sum[n] = from_left.cost[n];
@@ -196,6 +252,9 @@ void sweep_backward(const SweepRow& row, const WinnerPointers& out) {
 template <class S>
 constexpr CensusKernels make_census_kernels() {
   return {.census = census_row<S>,
+          .differences = {differences_row<S, 32>, differences_row<S, 64>, differences_row<S, 96>,
+                          differences_row<S, 128>, differences_row<S, 160>, differences_row<S, 192>,
+                          differences_row<S, 224>, differences_row<S, 256>},
           .forward = {sweep_forward<S, 32>, sweep_forward<S, 64>, sweep_forward<S, 96>,
                       sweep_forward<S, 128>, sweep_forward<S, 160>, sweep_forward<S, 192>,
                       sweep_forward<S, 224>, sweep_forward<S, 256>},

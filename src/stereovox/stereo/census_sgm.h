@@ -14,8 +14,8 @@ struct CensusSgmParams {
 
   CensusSearch search;
   int smoothness_small = 6;
-  int smoothness_large = 40;
-  double edge_contrast_gray = 20.0;
+  int smoothness_large = 36;
+  double edge_contrast_gray = 10.0;
 
   void describe(ParameterList& list) {
     search.describe(list);

@@ -26,7 +26,7 @@ cv::Mat1b padded(const cv::Mat1b& image) {
 cv::Mat1b bytes(int count) { return cv::Mat1b(1, count + kRowSlack, std::uint8_t{0}); }
 
 void census_of_row(const CensusKernels& kernels, const cv::Mat1b& image, int y, int width_px,
-                   const CensusRow& out) {
+                   const PixelRow& out) {
   std::array<const std::uint8_t*, kWindowHeight_px> rows = {};
   for (int i = 0; i < kWindowHeight_px; ++i)
     rows[i] = image_row(image, y + i - kCensusHalfHeight_px);
@@ -35,9 +35,9 @@ void census_of_row(const CensusKernels& kernels, const cv::Mat1b& image, int y, 
 
 // Splits `planes`, one row of memory, into the planes of a row with `before` and `after` pixels
 // beyond its ends.
-CensusRow plane_pointers(cv::Mat1b& planes, int before, int width_px, int after) {
-  CensusRow row;
-  for (int p = 0; p < kCensusPlanes; ++p)
+PixelRow plane_pointers(cv::Mat1b& planes, int before, int width_px, int after) {
+  PixelRow row;
+  for (int p = 0; p < kPlanes; ++p)
     row.planes[p] = planes.data + p * (before + width_px + after + kRowSlack) + before;
   return row;
 }
@@ -66,17 +66,17 @@ CensusSweep::CensusSweep(const CensusPair& pair, const SweepParams& params, int 
   const int width = pair.width_px, candidates = params.candidates;
   const int before = std::max(0, params.max_disparity_px());
   const int after = std::max(0, -params.min_disparity_px);
-  left_census_ = bytes(kCensusPlanes * (width + kRowSlack));
-  right_census_ = bytes(kCensusPlanes * (before + width + after + kRowSlack));
+  left_census_ = bytes(kPlanes * (width + kRowSlack));
+  right_census_ = bytes(kPlanes * (before + width + after + kRowSlack));
   cost_ = bytes(width * candidates);
   sum_ = bytes(width * candidates);
   penalties_ = bytes(kPenaltyRows * (width + 1));
   row_.width_px = width;
   row_.small_penalty = static_cast<std::uint8_t>(params.small_penalty);
-  row_.left = plane_pointers(left_census_, 0, width, 0);
   row_.cost = cost_.data;
   row_.sum = sum_.data;
   row_.penalty_beside = penalties_.data;
+  for (cv::Mat1b& row : differences_) row = bytes(width * candidates);
   for (int k = 0; k < 3; ++k) {
     row_.penalty_above[k] = penalties_.data + (k + 1) * (width + 1);
     paths_above_[k] = bytes(width * (candidates + kPathWall) + kPathWall);
@@ -85,6 +85,7 @@ CensusSweep::CensusSweep(const CensusPair& pair, const SweepParams& params, int 
     for (int x = 0; x < width; ++x)
       std::memset(row_.paths_above[k] + x * (candidates + kPathWall) + kPathWall, 0, candidates);
   }
+  for (const int y : {first_row - 1, first_row}) read_costs(y);
 }
 
 void CensusSweep::skip_row() {
@@ -101,27 +102,31 @@ void CensusSweep::next_row(WinnerRow& found) {
 }
 
 void CensusSweep::enter_row() {
-  read_census();
+  read_costs(y_ + 1);
+  for (int i = 0; i < 3; ++i) row_.differences[i] = differences_of_row(y_ - 1 + i);
   read_penalties();
   const int width = row_.width_px, turn = y_ % width;
   row_.first_slot = {0, (width - turn) % width, turn};
   clear_entries();
 }
 
-void CensusSweep::read_census() {
-  const int width = row_.width_px;
+std::uint8_t* CensusSweep::differences_of_row(int y) { return differences_[(y + 3) % 3].data; }
+
+// Rows beyond the image repeat the last one.
+void CensusSweep::read_costs(int y) {
+  const int width = row_.width_px, row_in_image = std::clamp(y, 0, pair_.height_px - 1);
   const int before = std::max(0, params_.max_disparity_px());
   const int after = std::max(0, -params_.min_disparity_px);
-  const CensusRow right = plane_pointers(right_census_, before, width, after);
-  // First the right image: the slack beyond a plane may reach into the next one.
-  census_of_row(kernels_, pair_.right, y_, width, right);
-  census_of_row(kernels_, pair_.left, y_, width, row_.left);
-  for (int p = 0; p < kCensusPlanes; ++p) {
-    std::uint8_t* const plane = right.planes[p];
+  const PixelRow left = plane_pointers(left_census_, 0, width, 0);
+  PixelRow right = plane_pointers(right_census_, before, width, after);
+  census_of_row(kernels_, pair_.left, row_in_image, width, left);
+  census_of_row(kernels_, pair_.right, row_in_image, width, right);
+  for (std::uint8_t*& plane : right.planes) {
     std::memset(plane - before, plane[0], before);
     std::memset(plane + width, plane[width - 1], after + kRowSlack);
-    row_.right.planes[p] = plane - params_.max_disparity_px();
+    plane -= params_.max_disparity_px();
   }
+  kernels_.differences[size_index_](width, left, right, differences_of_row(y));
 }
 
 void CensusSweep::read_penalties() {

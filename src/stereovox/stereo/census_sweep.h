@@ -50,7 +50,8 @@ class CensusSweep {
 
  private:
   void enter_row();
-  void read_census();
+  std::uint8_t* differences_of_row(int y);
+  void read_costs(int y);
   void read_penalties();
   void clear_entries();
 
@@ -61,6 +62,7 @@ class CensusSweep {
   int y_;
   // Matrices only because they are aligned; each is one row.
   cv::Mat1b left_census_, right_census_, cost_, sum_, penalties_;
+  std::array<cv::Mat1b, 3> differences_;  // of rows y - 1, y, y + 1, row y in y mod 3
   std::array<cv::Mat1b, 3> paths_above_;
   SweepRow row_;
 };

@@ -27,6 +27,18 @@ std::uint32_t census(const cv::Mat1b& image, int x, int y) {
   return word;
 }
 
+int mean(int a, int b) { return (a + b + 1) / 2; }
+
+// Clipped change of brightness along the row, smoothed across it.
+int slope(const cv::Mat1b& image, int x, int y) {
+  x = std::clamp(x, 0, image.cols - 1);
+  const auto smooth = [&](int column) {
+    return mean(pixel(image, column, y),
+                mean(pixel(image, column, y - 1), pixel(image, column, y + 1)));
+  };
+  return std::clamp(smooth(x + 1) - smooth(x - 1), -kMaxSlope_gray, kMaxSlope_gray);
+}
+
 using Costs = std::vector<int>;  // of the candidates of one pixel
 
 class Reference {
@@ -36,7 +48,11 @@ class Reference {
         right_(pair.right.pixels),
         params_(params),
         first_row_(first_row),
-        end_row_(end_row) {}
+        end_row_(end_row) {
+    for (int y = first_row; y < end_row; ++y)
+      for (int x = 0; x < left_.cols; ++x)
+        for (int c = 0; c < params.candidates; ++c) costs_.push_back(matching_cost(x, y, c));
+  }
 
   std::vector<WinnerRow> winners() const {
     std::vector<std::vector<Costs>> sums(end_row_ - first_row_,
@@ -49,9 +65,27 @@ class Reference {
   }
 
  private:
-  int matching_cost(int x, int y, int candidate) const {
+  int difference(int x, int y, int candidate) const {
+    x = std::clamp(x, 0, left_.cols - 1);
+    y = std::clamp(y, 0, left_.rows - 1);
     const int x_right = x - params_.max_disparity_px() + candidate;
-    return std::popcount(census(left_, x, y) ^ census(right_, x_right, y));
+    const int ones = std::popcount(census(left_, x, y) ^ census(right_, x_right, y));
+    const int slopes = std::abs(slope(left_, x, y) - slope(right_, x_right, y));
+    return mean(ones, std::min(kSlopeWeight * slopes, kMaxSlopeCost));
+  }
+
+  int smooth_difference(int x, int y, int candidate) const {
+    return mean(difference(x, y, candidate),
+                mean(difference(x - 1, y, candidate), difference(x + 1, y, candidate)));
+  }
+
+  int matching_cost(int x, int y, int candidate) const {
+    return mean(smooth_difference(x, y, candidate), mean(smooth_difference(x, y - 1, candidate),
+                                                         smooth_difference(x, y + 1, candidate)));
+  }
+
+  int cost(int x, int y, int candidate) const {
+    return costs_[((y - first_row_) * left_.cols + x) * params_.candidates + candidate];
   }
 
   // Each pixel's path comes from (x + dx, y + dy).
@@ -78,7 +112,7 @@ class Reference {
       int best = std::min(before[c], smallest + large_penalty);
       if (c > 0) best = std::min(best, before[c - 1] + params_.small_penalty);
       if (c + 1 < count) best = std::min(best, before[c + 1] + params_.small_penalty);
-      next[c] = matching_cost(x, y, c) + best - smallest;
+      next[c] = cost(x, y, c) + best - smallest;
     }
     return next;
   }
@@ -108,6 +142,7 @@ class Reference {
   const cv::Mat1b left_, right_;
   const SweepParams params_;
   const int first_row_, end_row_;
+  std::vector<int> costs_;  // of each pixel's candidates
 };
 
 }  // namespace

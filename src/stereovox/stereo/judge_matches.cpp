@@ -41,7 +41,7 @@ class RightOwners {
   RightOwners(const WinnerRow& winners, int max_disparity_px)
       : winners_(winners),
         max_disparity_px_(max_disparity_px),
-        owner_(winners.cost.size(), std::numeric_limits<std::uint32_t>::max()) {
+        owner_(winners.cost.size(), kNobody) {
     for (int u = 0; u < width(); ++u)
       if (const int there = right_column(u); is_inside(there))
         owner_[there] =
@@ -51,9 +51,11 @@ class RightOwners {
   int width() const { return static_cast<int>(owner_.size()); }
   int right_column(int u) const { return u - max_disparity_px_ + winners_.candidate[u]; }
   bool is_inside(int column) const { return column >= 0 && column < width(); }
+  bool has_owner(int column) const { return is_inside(column) && owner_[column] != kNobody; }
   int owner(int column) const { return static_cast<int>(owner_[column] & kColumnMask); }
 
  private:
+  static constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
   static constexpr int kColumnBits = 16;
   static constexpr std::uint32_t kColumnMask = (1U << kColumnBits) - 1;
 
@@ -62,17 +64,28 @@ class RightOwners {
   std::vector<std::uint32_t> owner_;
 };
 
+// A sub-pixel disparity ends between two right pixels; one of them must agree.
 void fill_left_right(const RightOwners& owners, const float* disparity_px, float* left_right_px) {
   for (int u = 0; u < owners.width(); ++u) {
     const int there = owners.right_column(u);
-    left_right_px[u] = owners.is_inside(there)
-                           ? std::min(std::abs(disparity_px[u] - disparity_px[owners.owner(there)]),
-                                      kMaxLeftRight_px)
-                           : std::numeric_limits<float>::infinity();
+    left_right_px[u] = std::numeric_limits<float>::infinity();
+    if (!owners.is_inside(there)) continue;
+    const bool ends_before = disparity_px[u] > static_cast<float>(u - there);
+    for (const int column : {there, ends_before ? there - 1 : there + 1}) {
+      if (!owners.has_owner(column)) continue;
+      const float difference_px = std::abs(disparity_px[u] - disparity_px[owners.owner(column)]);
+      left_right_px[u] = std::min(left_right_px[u], std::min(difference_px, kMaxLeftRight_px));
+    }
   }
 }
 
 bool is_recorded(const cv::Mat1b& valid, int v, int u) { return valid.empty() || valid(v, u) != 0; }
+
+bool joins_recorded_pixels(const RectifiedPair& pair, int v, int u, float disparity_px) {
+  const int there = u - static_cast<int>(std::lround(disparity_px));
+  return there >= 0 && there < pair.right.width() && is_recorded(pair.valid_left, v, u) &&
+         is_recorded(pair.valid_right, v, there);
+}
 
 class Judge {
  public:
@@ -96,7 +109,8 @@ class Judge {
           left_right_px[u] > max_left_right_px_)
         continue;
       const Credence credence = table_.of(log_ratio[u], left_right_px[u], variance_px2[u]);
-      if (credence.confidence < min_confidence_ || !joins_recorded_pixels(v, u, disparity_px[u]))
+      if (credence.confidence < min_confidence_ ||
+          !joins_recorded_pixels(pair_, v, u, disparity_px[u]))
         continue;
       out.disparity_px(v, u) = disparity_px[u];
       out.sigma_px(v, u) = credence.sigma_px;
@@ -107,18 +121,36 @@ class Judge {
  private:
   static constexpr double kPercent = 0.01;
 
-  bool joins_recorded_pixels(int v, int u, float disparity_px) const {
-    if (pair_.valid_left.empty() && pair_.valid_right.empty()) return true;
-    const int there = std::clamp(u - static_cast<int>(std::lround(disparity_px)), 0,
-                                 features_.disparity_px.cols - 1);
-    return is_recorded(pair_.valid_left, v, u) && is_recorded(pair_.valid_right, v, there);
-  }
-
   const RectifiedPair& pair_;
   const MatchFeatures& features_;
   const CredenceTable table_;
   const float min_log_ratio_, max_left_right_px_, min_confidence_;
 };
+
+// Where a gap of a row is narrow and its two sides agree, the surface goes on behind it.
+void bridge_gaps(const RectifiedPair& pair, int max_gap_px, int v, DisparityImage& image) {
+  constexpr float kMaxStep_px = 1.0F;
+  // Set by hand: a bridge is inferred, not measured.
+  constexpr float kConfidence = 0.9F, kSigma_px = 0.7F;
+  float* const disparity_px = image.disparity_px[v];
+  int last = -1;
+  for (int u = 0; u < image.width(); ++u) {
+    if (!(disparity_px[u] > 0.0F)) continue;
+    const int gap_px = u - last - 1;
+    if (last >= 0 && gap_px > 0 && gap_px <= max_gap_px &&
+        std::abs(disparity_px[u] - disparity_px[last]) <= kMaxStep_px) {
+      const float slope = (disparity_px[u] - disparity_px[last]) / static_cast<float>(u - last);
+      for (int i = last + 1; i < u; ++i) {
+        const float bridge_px = disparity_px[last] + slope * static_cast<float>(i - last);
+        if (!joins_recorded_pixels(pair, v, i, bridge_px)) continue;
+        disparity_px[i] = bridge_px;
+        image.sigma_px(v, i) = kSigma_px;
+        image.confidence(v, i) = kConfidence;
+      }
+    }
+    last = u;
+  }
+}
 
 void forget_removed(DisparityImage& image, int v) {
   for (int u = 0; u < image.width(); ++u)
@@ -151,7 +183,10 @@ DisparityImage judge_matches(const RectifiedPair& pair, const MatchFeatures& fea
   parallel_for(0, size.height, threads, [&](int v) { judge.judge_row(v, out); });
   remove_speckles(out.disparity_px, search.speckle_size_px,
                   static_cast<float>(search.speckle_range_px));
-  parallel_for(0, size.height, threads, [&](int v) { forget_removed(out, v); });
+  parallel_for(0, size.height, threads, [&](int v) {
+    forget_removed(out, v);
+    bridge_gaps(pair, search.bridged_gap_px, v, out);
+  });
   return out;
 }
 
