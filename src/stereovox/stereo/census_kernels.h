@@ -55,8 +55,6 @@ struct WinnerPointers {
   std::uint8_t* candidate = nullptr;
   std::uint8_t* cost = nullptr;    // its sum of path costs
   std::uint8_t* second = nullptr;  // the smallest sum of candidates that are not its neighbours
-  std::uint8_t* before = nullptr;  // the sum of candidate - 1; 255 for the first
-  std::uint8_t* after = nullptr;   // the sum of candidate + 1; 255 for the last
 };
 
 // Functions that depend on the number of candidates are listed by candidates / kCandidateStep - 1.

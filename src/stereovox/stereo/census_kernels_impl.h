@@ -208,16 +208,8 @@ int first_equal(const typename S::V (&sum)[N], typename S::V smallest) {
 template <class S, int N>
 void find_winner(const typename S::V (&sum)[N], int x, const WinnerPointers& out) {
   using V = typename S::V;
-  constexpr int kCandidates = N * S::kSize;
-  std::uint8_t sums[1 + kCandidates + kRowSlack];  // [0] and [1 + kCandidates] are walls
-  sums[0] = kMaxByte;
-  sums[1 + kCandidates] = kMaxByte;
   V all = sum[0];
-  S::store(sums + 1, sum[0]);
-  for (int n = 1; n < N; ++n) {
-    all = S::min(all, sum[n]);
-    S::store(sums + 1 + n * S::kSize, sum[n]);
-  }
+  for (int n = 1; n < N; ++n) all = S::min(all, sum[n]);
   const V smallest = S::min_of_all(all);
   const int best = first_equal<S, N>(sum, smallest);
   V others = S::spread(kMaxByte);
@@ -227,8 +219,6 @@ void find_winner(const typename S::V (&sum)[N], int x, const WinnerPointers& out
   out.candidate[x] = static_cast<std::uint8_t>(best);
   out.cost[x] = S::first(smallest);
   out.second[x] = S::first(S::min_of_all(others));
-  out.before[x] = sums[best];
-  out.after[x] = sums[best + 2];
 }
 
 template <class S, int kCandidates>

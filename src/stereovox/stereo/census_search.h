@@ -14,7 +14,6 @@ struct CensusSearch {
   int speckle_size_px = 100;
   int speckle_range_px = 2;
   double min_confidence = 0.5;
-  int bridged_gap_px = 10;
 
   int candidates() const {
     return (disparity_range_px + kCandidateStep - 1) / kCandidateStep * kCandidateStep;
@@ -34,8 +33,6 @@ struct CensusSearch {
     list("speckle_range_px", speckle_range_px, {1, 64}, "largest disparity step inside an island");
     list("min_confidence", min_confidence, {0, 1},
          "disparities that are less probably within 2 px are removed");
-    list("bridged_gap_px", bridged_gap_px, {0, 100},
-         "gaps of a row up to this wide are bridged where both sides agree within 1 px; 0 = none");
   }
 };
 

@@ -42,14 +42,31 @@ PixelRow plane_pointers(cv::Mat1b& planes, int before, int width_px, int after) 
   return row;
 }
 
+// Costs of eight candidates side by side, one a byte.
+using EightCosts = std::uint64_t;
+constexpr int kEight = sizeof(EightCosts);
+constexpr int kMaxCost = std::max(kCensusBits, kMaxSlopeCost);
+static_assert(kLocalWidth_px * kMaxCost < kNoLocalCost, "a sum must not carry into the next byte");
+
+// `local` holds the costs of candidates -2 ... 2 about the winner. Returns the step to the best of
+// the middle three; of equals the winner, then the one before.
+int best_local_step(const std::uint8_t* local) {
+  int step = local[1] < local[2] ? -1 : 0;
+  if (local[3] < local[2 + step]) step = 1;
+  return step;
+}
+
 }  // namespace
 
 WinnerRow::WinnerRow(int width_px)
-    : candidate(width_px), cost(width_px), second(width_px), before(width_px), after(width_px) {}
+    : candidate(width_px),
+      cost(width_px),
+      second(width_px),
+      local_before(width_px),
+      local(width_px),
+      local_after(width_px) {}
 
-WinnerPointers WinnerRow::pointers() {
-  return {candidate.data(), cost.data(), second.data(), before.data(), after.data()};
-}
+WinnerPointers WinnerRow::pointers() { return {candidate.data(), cost.data(), second.data()}; }
 
 CensusPair pad_for_census(const RectifiedPair& pair) {
   return {padded(pair.left.pixels), padded(pair.right.pixels), pair.left.width(),
@@ -98,6 +115,7 @@ void CensusSweep::next_row(WinnerRow& found) {
   enter_row();
   kernels_.forward[size_index_](row_);
   kernels_.backward[size_index_](row_, found.pointers());
+  choose_locally(found);
   ++y_;
 }
 
@@ -141,6 +159,30 @@ void CensusSweep::read_penalties() {
   fill(1, above);
   fill(2, above - 1);
   fill(3, above + 1);
+}
+
+void CensusSweep::choose_locally(WinnerRow& found) const {
+  constexpr int kReach = 2;
+  const int width = row_.width_px, candidates = params_.candidates;
+  for (int x = 0; x < width; ++x) {
+    const int first = std::clamp(found.candidate[x] - kReach, 0, candidates - kEight);
+    EightCosts sum = 0;
+    for (int dx = -kLocalWidth_px / 2; dx <= kLocalWidth_px / 2; ++dx) {
+      EightCosts costs = 0;
+      const int column = std::clamp(x + dx, 0, width - 1);
+      std::memcpy(&costs, row_.cost + column * candidates + first, kEight);
+      sum += costs;
+    }
+    std::array<std::uint8_t, kReach + kEight + kReach> local;
+    local.fill(kNoLocalCost);
+    std::memcpy(local.data() + kReach, &sum, kEight);
+    const std::uint8_t* const about = local.data() + found.candidate[x] - first;
+    const int step = best_local_step(about);
+    found.candidate[x] = static_cast<std::uint8_t>(found.candidate[x] + step);
+    found.local_before[x] = about[kReach + step - 1];
+    found.local[x] = about[kReach + step];
+    found.local_after[x] = about[kReach + step + 1];
+  }
 }
 
 // Nothing lies before the first pixel of the path from above left, or of that from above right.

@@ -14,6 +14,9 @@
 
 namespace stereovox {
 
+inline constexpr int kLocalWidth_px = 5;
+inline constexpr std::uint8_t kNoLocalCost = 255;
+
 struct SweepParams {
   int min_disparity_px = 0;
   int candidates = 64;  // a multiple of kCandidateStep, up to kMaxCandidates
@@ -23,9 +26,14 @@ struct SweepParams {
   int max_disparity_px() const { return min_disparity_px + candidates - 1; }
 };
 
-// What a matcher knows of a row's pixels: see WinnerPointers.
+// What a matcher knows of a row's pixels: see WinnerPointers. The paths from above drag disparities
+// along where a surface leans towards the camera, as floors do. So the winner is chosen anew among
+// the one of the paths and its two neighbours, by the local cost alone: summed over
+// kLocalWidth_px pixels of the row.
 struct WinnerRow {
-  std::vector<std::uint8_t> candidate, cost, second, before, after;
+  std::vector<std::uint8_t> candidate, cost, second;
+  // Local costs of the winner and its neighbours; kNoLocalCost where there is no such candidate.
+  std::vector<std::uint8_t> local_before, local, local_after;
 
   explicit WinnerRow(int width_px);
   WinnerPointers pointers();
@@ -54,6 +62,7 @@ class CensusSweep {
   void read_costs(int y);
   void read_penalties();
   void clear_entries();
+  void choose_locally(WinnerRow& found) const;
 
   const CensusPair& pair_;
   const SweepParams params_;

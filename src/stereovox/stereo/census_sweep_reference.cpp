@@ -60,7 +60,10 @@ class Reference {
     for (const auto& [dx, dy] : {std::pair{-1, 0}, {0, -1}, {-1, -1}, {1, -1}, {1, 0}})
       add_path(dx, dy, sums);
     std::vector<WinnerRow> rows;
-    for (const std::vector<Costs>& row : sums) rows.push_back(winners_of(row));
+    for (int y = first_row_; y < end_row_; ++y) {
+      rows.push_back(winners_of(sums[y - first_row_]));
+      for (int x = 0; x < left_.cols; ++x) choose_locally(x, y, rows.back());
+    }
     return rows;
   }
 
@@ -133,10 +136,27 @@ class Reference {
       row.candidate[x] = static_cast<std::uint8_t>(best);
       row.cost[x] = limited(sum[best]);
       row.second[x] = limited(second);
-      row.before[x] = limited(best > 0 ? sum[best - 1] : kFarthest);
-      row.after[x] = limited(best + 1 < count ? sum[best + 1] : kFarthest);
     }
     return row;
+  }
+
+  int local_cost(int x, int y, int candidate) const {
+    if (candidate < 0 || candidate >= params_.candidates) return kNoLocalCost;
+    int sum = 0;
+    for (int dx = -kLocalWidth_px / 2; dx <= kLocalWidth_px / 2; ++dx)
+      sum += cost(std::clamp(x + dx, 0, left_.cols - 1), y, candidate);
+    return sum;
+  }
+
+  void choose_locally(int x, int y, WinnerRow& row) const {
+    const int winner = row.candidate[x];
+    int best = winner;
+    for (const int c : {winner - 1, winner + 1})
+      if (local_cost(x, y, c) < local_cost(x, y, best)) best = c;
+    row.candidate[x] = static_cast<std::uint8_t>(best);
+    row.local_before[x] = static_cast<std::uint8_t>(local_cost(x, y, best - 1));
+    row.local[x] = static_cast<std::uint8_t>(local_cost(x, y, best));
+    row.local_after[x] = static_cast<std::uint8_t>(local_cost(x, y, best + 1));
   }
 
   const cv::Mat1b left_, right_;

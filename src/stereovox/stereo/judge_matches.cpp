@@ -23,11 +23,11 @@ const std::array<float, 256>& log_of_raised() {
 }
 
 void fill_disparities(const WinnerRow& winners, int max_disparity_px, float* disparity_px) {
-  constexpr int kNoNeighbour = 255;
-  for (std::size_t u = 0; u < winners.cost.size(); ++u) {
-    const int cost = winners.cost[u], before = winners.before[u], after = winners.after[u];
-    const int bend = before + after - 2 * cost;
-    const bool has_vertex = bend > 0 && before != kNoNeighbour && after != kNoNeighbour;
+  for (std::size_t u = 0; u < winners.local.size(); ++u) {
+    const int cost = winners.local[u], before = winners.local_before[u];
+    const int after = winners.local_after[u], bend = before + after - 2 * cost;
+    const bool has_vertex = before != kNoLocalCost && after != kNoLocalCost &&
+                            std::min(before, after) >= cost && bend > 0;
     const float shift =
         static_cast<float>(before - after) / static_cast<float>(2 * std::max(bend, 1));
     disparity_px[u] =
@@ -127,31 +127,6 @@ class Judge {
   const float min_log_ratio_, max_left_right_px_, min_confidence_;
 };
 
-// Where a gap of a row is narrow and its two sides agree, the surface goes on behind it.
-void bridge_gaps(const RectifiedPair& pair, int max_gap_px, int v, DisparityImage& image) {
-  constexpr float kMaxStep_px = 1.0F;
-  // Set by hand: a bridge is inferred, not measured.
-  constexpr float kConfidence = 0.9F, kSigma_px = 0.7F;
-  float* const disparity_px = image.disparity_px[v];
-  int last = -1;
-  for (int u = 0; u < image.width(); ++u) {
-    if (!(disparity_px[u] > 0.0F)) continue;
-    const int gap_px = u - last - 1;
-    if (last >= 0 && gap_px > 0 && gap_px <= max_gap_px &&
-        std::abs(disparity_px[u] - disparity_px[last]) <= kMaxStep_px) {
-      const float slope = (disparity_px[u] - disparity_px[last]) / static_cast<float>(u - last);
-      for (int i = last + 1; i < u; ++i) {
-        const float bridge_px = disparity_px[last] + slope * static_cast<float>(i - last);
-        if (!joins_recorded_pixels(pair, v, i, bridge_px)) continue;
-        disparity_px[i] = bridge_px;
-        image.sigma_px(v, i) = kSigma_px;
-        image.confidence(v, i) = kConfidence;
-      }
-    }
-    last = u;
-  }
-}
-
 void forget_removed(DisparityImage& image, int v) {
   for (int u = 0; u < image.width(); ++u)
     if (image.disparity_px(v, u) == 0.0F) image.sigma_px(v, u) = image.confidence(v, u) = 0.0F;
@@ -183,10 +158,7 @@ DisparityImage judge_matches(const RectifiedPair& pair, const MatchFeatures& fea
   parallel_for(0, size.height, threads, [&](int v) { judge.judge_row(v, out); });
   remove_speckles(out.disparity_px, search.speckle_size_px,
                   static_cast<float>(search.speckle_range_px));
-  parallel_for(0, size.height, threads, [&](int v) {
-    forget_removed(out, v);
-    bridge_gaps(pair, search.bridged_gap_px, v, out);
-  });
+  parallel_for(0, size.height, threads, [&](int v) { forget_removed(out, v); });
   return out;
 }
 

@@ -16,7 +16,7 @@ namespace stereovox {
 MatchFeatures features_of_size(cv::Size size);
 
 // Writes row v of all features but the variance. The sub-pixel position is the vertex of the
-// parabola through the winner's cost and its neighbours'.
+// parabola through the local costs of the winner and its neighbours.
 void fill_feature_row(const WinnerRow& winners, int max_disparity_px, int v,
                       MatchFeatures& features);
 
