@@ -18,13 +18,14 @@ constexpr int kStripeHeight_px = 120;
 constexpr int kWarmUpRows = 12;
 constexpr int kMedian_px = 3;  // side of the window that single wrong disparities vanish in
 
-// Fitted by apps/fit_confidence to cones and motorcycle. The last two bins were not reached.
+// Fitted by apps/fit_confidence to cones, motorcycle and six frames of a rendered room. The last
+// three bins were not reached.
 constexpr ConfidenceModel kModel = {
-    .bias = 0.652,
-    .ratio = 2.514,
-    .left_right = 0.564,
-    .variance = 0.293,
-    .sigma_px = {0.82, 0.72, 0.77, 0.70, 0.61, 0.54, 0.38, 0.30, 0.27, 0.21, 0.21, 0.21}};
+    .bias = 1.838,
+    .ratio = 1.357,
+    .left_right = 0.704,
+    .variance = 0.598,
+    .sigma_px = {0.94, 0.93, 0.91, 0.78, 0.76, 0.79, 0.52, 0.34, 0.23, 0.23, 0.23, 0.23}};
 
 SweepParams sweep_params(const CensusSgmParams& p) {
   if (p.smoothness_large <= p.smoothness_small)
