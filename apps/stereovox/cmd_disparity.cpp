@@ -53,7 +53,8 @@ ExitCode run(const DisparityOptions& options) {
   if (!warning.empty()) warn(warning);
 
   Duration duration;
-  const DisparityImage disparity = timed(duration, [&] { return match(pair, config.matcher); });
+  const DisparityImage disparity =
+      timed(duration, [&] { return match(pair, config.matcher, config.thread_count()); });
   write_disparity(options.output, disparity);
   if (!options.picture.empty()) write_png(options.picture, draw_disparity(disparity));
   std::cout << fmt::format("{}: {} x {}, {:.1f} % of the pixels have a disparity, {:.1f} ms\n",

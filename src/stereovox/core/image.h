@@ -13,11 +13,13 @@ struct GrayImage {
   int height() const { return pixels.rows; }
 };
 
-// Disparity u_left - u_right of each pixel of the rectified left image, and its standard deviation.
-// Invariant: both have the same size; disparity 0 means none, and is never a measurement.
+// Disparity u_left - u_right of each pixel of the rectified left image, its standard deviation, and
+// the probability that it is right at all.
+// Invariant: all have the same size; disparity 0 means none, and is never a measurement.
 struct DisparityImage {
   cv::Mat1f disparity_px;
   cv::Mat1f sigma_px;
+  cv::Mat1f confidence = {};  // 0 to 1; empty = the matcher does not say
 
   int width() const { return disparity_px.cols; }
   int height() const { return disparity_px.rows; }

@@ -78,7 +78,10 @@ class MatchedFrames::Worker {
 
 MatchedFrames::MatchedFrames(StereoSequence& sequence, const Rectifier& rectifier,
                              const PipelineConfig& config)
-    : sequence_(sequence), rectifier_(rectifier), matcher_(config.matcher) {
+    : sequence_(sequence),
+      rectifier_(rectifier),
+      matcher_(config.matcher),
+      threads_(config.thread_count()) {
   std::vector<CornerOffsets> offsets;
   while (checked_.size() < kCheckedFrames) {
     std::optional<MatchedFrame> frame = rectified(sequence_, rectifier_);
@@ -105,7 +108,8 @@ std::optional<MatchedFrame> MatchedFrames::make_next() {
     frame = std::move(checked_.back());
     checked_.pop_back();
   }
-  if (frame) frame->disparity = timed(frame->match, [&] { return match(frame->pair, matcher_); });
+  if (frame)
+    frame->disparity = timed(frame->match, [&] { return match(frame->pair, matcher_, threads_); });
   return frame;
 }
 

@@ -45,6 +45,7 @@ class MatchedFrames {
   StereoSequence& sequence_;
   const Rectifier& rectifier_;
   const MatcherParams matcher_;
+  const int threads_;
   std::vector<MatchedFrame> checked_;  // the first frames, rectified but not matched, last first
   std::string warning_;
   std::unique_ptr<Worker> worker_;  // none with one thread

@@ -11,7 +11,7 @@
 
 namespace stereovox {
 
-DisparityImage match(const RectifiedPair& pair, const BlockMatchingParams& p) {
+DisparityImage match(const RectifiedPair& pair, const BlockMatchingParams& p, int /*threads*/) {
   const DisparitySearch& search = p.search;
   const int window_px = p.correlation_window_size_px | 1;
   if (window_px >= std::min(pair.left.width(), pair.left.height()))

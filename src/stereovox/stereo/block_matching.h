@@ -24,6 +24,6 @@ struct BlockMatchingParams {
 };
 
 // Contract: see matcher.h.
-DisparityImage match(const RectifiedPair& pair, const BlockMatchingParams& params);
+DisparityImage match(const RectifiedPair& pair, const BlockMatchingParams& params, int threads = 1);
 
 }  // namespace stereovox

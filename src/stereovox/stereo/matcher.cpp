@@ -2,8 +2,8 @@
 
 namespace stereovox {
 
-DisparityImage match(const RectifiedPair& pair, const MatcherParams& params) {
-  return std::visit([&](const auto& matcher) { return match(pair, matcher); }, params);
+DisparityImage match(const RectifiedPair& pair, const MatcherParams& params, int threads) {
+  return std::visit([&](const auto& matcher) { return match(pair, matcher, threads); }, params);
 }
 
 }  // namespace stereovox

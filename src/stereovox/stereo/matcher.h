@@ -9,16 +9,19 @@
 #include "stereovox/core/frame.h"
 #include "stereovox/core/image.h"
 #include "stereovox/stereo/block_matching.h"
+#include "stereovox/stereo/census_sgm.h"
 #include "stereovox/stereo/semi_global_matching.h"
 
 namespace stereovox {
 
-using MatcherParams = std::variant<SemiGlobalMatchingParams, BlockMatchingParams>;
+using MatcherParams = std::variant<SemiGlobalMatchingParams, BlockMatchingParams, CensusSgmParams>;
 
 // The disparity image has the size of the left image. Disparities lie in
 // [min_disparity_px, min_disparity_px + disparity_range_px) and are > 0; 0 means none: no match, an
 // ambiguous one, one that fails the left-right check, an island smaller than speckle_size_px, or a
-// pixel that one of the cameras did not record. sigma_px is > 0 where the disparity is.
-DisparityImage match(const RectifiedPair& pair, const MatcherParams& params);
+// pixel that one of the cameras did not record. sigma_px is > 0 where the disparity is, and so is
+// the confidence of matchers that give one. The result is the same for any number of threads;
+// OpenCV's matchers take the number that is set in OpenCV.
+DisparityImage match(const RectifiedPair& pair, const MatcherParams& params, int threads = 1);
 
 }  // namespace stereovox

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <opencv2/core.hpp>
+#include <random>
 
 #include "stereovox/core/error.h"
 #include "stereovox/stereo/disparity_picture.h"
@@ -19,7 +21,8 @@ double slanted(int u, int v) { return 20.0 + 0.03 * u - 0.04 * v; }
 class EveryMatcher : public testing::TestWithParam<MatcherParams> {};
 
 INSTANTIATE_TEST_SUITE_P(Matchers, EveryMatcher,
-                         testing::Values(SemiGlobalMatchingParams{}, BlockMatchingParams{}),
+                         testing::Values(SemiGlobalMatchingParams{}, BlockMatchingParams{},
+                                         CensusSgmParams{}),
                          [](const auto& matcher) {
                            return std::visit([](const auto& p) { return std::string(p.kName); },
                                              matcher.param);
@@ -73,15 +76,71 @@ TEST_P(EveryMatcher, PixelsThatACameraDidNotRecordHaveNoDisparity) {
   EXPECT_GT(cv::countNonZero(found.disparity_px), 5000);
 }
 
+bool same(const DisparityImage& a, const DisparityImage& b) {
+  return cv::countNonZero(a.disparity_px != b.disparity_px) == 0 &&
+         cv::countNonZero(a.sigma_px != b.sigma_px) == 0 &&
+         (a.confidence.empty() || cv::countNonZero(a.confidence != b.confidence) == 0);
+}
+
 TEST_P(EveryMatcher, ResultDoesNotDependOnTheNumberOfThreads) {
-  const RectifiedPair pair = synthetic_pair(kSize, slanted);
+  const RectifiedPair pair = synthetic_pair({320, 480}, slanted);
   const int before = cv::getNumThreads();
   cv::setNumThreads(1);
   const DisparityImage one = match(pair, GetParam());
-  cv::setNumThreads(3);
-  const DisparityImage three = match(pair, GetParam());
+  for (const int threads : {2, 3, 8}) {
+    cv::setNumThreads(threads);
+    EXPECT_TRUE(same(one, match(pair, GetParam(), threads))) << threads;
+  }
   cv::setNumThreads(before);
-  EXPECT_EQ(cv::countNonZero(one.disparity_px != three.disparity_px), 0);
+}
+
+RectifiedPair pair_of(const std::function<std::uint8_t(int, int)>& gray) {
+  RectifiedPair pair;
+  pair.left.pixels.create(kSize);
+  for (int v = 0; v < kSize.height; ++v)
+    for (int u = 0; u < kSize.width; ++u) pair.left.pixels(v, u) = gray(u, v);
+  pair.right.pixels = pair.left.pixels.clone();
+  return pair;
+}
+
+double density(const DisparityImage& found) {
+  return cv::countNonZero(found.disparity_px) / static_cast<double>(kSize.area());
+}
+
+TEST(CensusSgm, NoiseOfTwoGreyValuesIsNoSurface) {
+  std::mt19937 random(7);
+  RectifiedPair pair = pair_of([&](int, int) { return static_cast<std::uint8_t>(random() % 3); });
+  pair.right = pair_of([&](int, int) { return static_cast<std::uint8_t>(random() % 3); }).left;
+  EXPECT_LT(density(match(pair, CensusSgmParams{})), 0.05);
+}
+
+TEST(CensusSgm, StripesThatRepeatAreNoSurface) {
+  constexpr int kPeriod_px = 16;
+  const RectifiedPair pair =
+      pair_of([](int u, int) { return static_cast<std::uint8_t>(u % kPeriod_px * 12); });
+  EXPECT_LT(density(match(pair, CensusSgmParams{})), 0.02);
+}
+
+TEST(CensusSgm, ACameraThatIsHalfAsBrightFindsTheSamePlane) {
+  RectifiedPair pair = synthetic_pair(kSize, slanted);
+  pair.right.pixels *= 0.5;
+  const DisparityImage found = match(pair, CensusSgmParams{});
+  EXPECT_GT(share_right(found, {64, 16, 240, 208}, 0.5), 0.9);
+}
+
+TEST(CensusSgm, FloorsAreNotDraggedUpOrDown) {
+  const auto floor = [](int, int v) { return 5.0 + 0.12 * v; };
+  const DisparityImage found = match(synthetic_pair(kSize, floor), CensusSgmParams{});
+  double sum_px = 0;
+  int count = 0;
+  for (int v = 40; v < 220; ++v)
+    for (int u = 60; u < 300; ++u)
+      if (found.disparity_px(v, u) > 0.0F) {
+        sum_px += found.disparity_px(v, u) - floor(u, v);
+        ++count;
+      }
+  EXPECT_GT(count, 30000);
+  EXPECT_NEAR(sum_px / count, 0.0, 0.05);
 }
 
 TEST(SemiGlobalMatching, RefusesPenaltiesInTheWrongOrder) {

@@ -7,7 +7,8 @@
 
 namespace stereovox {
 
-DisparityImage match(const RectifiedPair& pair, const SemiGlobalMatchingParams& p) {
+DisparityImage match(const RectifiedPair& pair, const SemiGlobalMatchingParams& p,
+                     int /*threads*/) {
   if (p.smoothness_large <= p.smoothness_small)
     throw UsageError("matcher.smoothness_large must exceed matcher.smoothness_small");
   const DisparitySearch& search = p.search;

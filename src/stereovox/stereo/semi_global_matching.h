@@ -27,6 +27,7 @@ struct SemiGlobalMatchingParams {
 };
 
 // Contract: see matcher.h.
-DisparityImage match(const RectifiedPair& pair, const SemiGlobalMatchingParams& params);
+DisparityImage match(const RectifiedPair& pair, const SemiGlobalMatchingParams& params,
+                     int threads = 1);
 
 }  // namespace stereovox

@@ -1,0 +1,84 @@
+// Semi-global matching on a census cost, row by row from top to bottom: five paths (from the left,
+// the three from above, from the right) are known when a row is left, so only rows are kept in
+// memory, never a volume. After Hirschmueller (PAMI 2008); the single sweep is the one of OpenCV's
+// MODE_SGBM, the cost the one of libSGM (centre-symmetric census, 9 x 7).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "stereovox/core/frame.h"
+#include "stereovox/stereo/census_kernels.h"
+
+namespace stereovox {
+
+inline constexpr int kLocalWidth_px = 5;
+inline constexpr std::uint8_t kNoLocalCost = 255;
+
+struct SweepParams {
+  int min_disparity_px = 0;
+  int candidates = 64;  // a multiple of kCandidateStep, up to kMaxCandidates
+  int small_penalty = 0;
+  std::array<std::uint8_t, 256> large_penalty = {};  // by the brightness step between two pixels
+
+  int max_disparity_px() const { return min_disparity_px + candidates - 1; }
+};
+
+// What a matcher knows of a row's pixels: see WinnerPointers. The paths from above drag disparities
+// along where a surface leans towards the camera, as floors do. So the winner is chosen anew among
+// the one of the paths and its two neighbours, by the local cost alone: summed over
+// kLocalWidth_px pixels of the row.
+struct WinnerRow {
+  std::vector<std::uint8_t> candidate, cost, second;
+  // Local costs of the winner and its neighbours; kNoLocalCost where there is no such candidate.
+  std::vector<std::uint8_t> local_before, local, local_after;
+
+  explicit WinnerRow(int width_px);
+  WinnerPointers pointers();
+  bool operator==(const WinnerRow&) const = default;
+};
+
+// Both images with the borders that a census window needs, repeated from the edge.
+struct CensusPair {
+  cv::Mat1b left, right;  // padded
+  int width_px = 0, height_px = 0;
+};
+CensusPair pad_for_census(const RectifiedPair& pair);
+
+class CensusSweep {
+ public:
+  // Starts with `first_row`, as if nothing were above it. Refers to `pair`.
+  CensusSweep(const CensusPair& pair, const SweepParams& params, int first_row,
+              const CensusKernels& kernels);
+
+  void skip_row();                  // the paths pass, nobody wins
+  void next_row(WinnerRow& found);  // `found` has the images' width
+
+ private:
+  void enter_row();
+  std::uint8_t* differences_of_row(int y);
+  void read_costs(int y);
+  void read_penalties();
+  void clear_entries();
+  void choose_locally(WinnerRow& found) const;
+
+  const CensusPair& pair_;
+  const SweepParams params_;
+  const CensusKernels& kernels_;
+  const std::size_t size_index_;  // of the kernels for this number of candidates
+  int y_;
+  // Matrices only because they are aligned; each is one row.
+  cv::Mat1b left_census_, right_census_, cost_, sum_, penalties_;
+  std::array<cv::Mat1b, 3> differences_;  // of rows y - 1, y, y + 1, row y in y mod 3
+  std::array<cv::Mat1b, 3> paths_above_;
+  SweepRow row_;
+};
+
+// The same winners of rows [first_row, end_row), plainly: every cost and path in a volume, one
+// number at a time. The oracle of the tests.
+std::vector<WinnerRow> sweep_reference(const RectifiedPair& pair, const SweepParams& params,
+                                       int first_row, int end_row);
+
+}  // namespace stereovox
