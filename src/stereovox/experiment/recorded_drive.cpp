@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 constexpr int kRendererVersion = 1, kMatcherVersion = 1;
 constexpr std::uint64_t kMaxKeyBytes = 16ULL << 20;
 constexpr const char *kKeyFile = "key.txt", *kEstimatedFile = "estimated.tum";
+// Says that every pair was rendered: one that was stopped leaves a data set, too, but a short one.
+constexpr const char* kRenderedFile = "rendered.txt";
 
 template <class Params>
 std::string text_of(Params params, const std::string& only_sections = "") {
@@ -77,7 +79,7 @@ fs::path sigma_path(const fs::path& folder, int frame) {
 // False when it was stopped.
 bool render_into(const fs::path& folder, const Simulation& simulation,
                  const RecordingProgress& progress) {
-  if (fs::exists(folder / "poses.txt") || fs::exists(folder / "mav0/cam1/data.csv")) return true;
+  if (fs::exists(folder / kRenderedFile)) return true;
   DataSetOptions options{.truth_every = 0, .keep_existing = true};
   options.should_stop = progress.should_stop;
   const int frames = static_cast<int>(simulation.trajectory().size());
@@ -85,7 +87,9 @@ bool render_into(const fs::path& folder, const Simulation& simulation,
   options.progress = [&](int done, int all) {
     if (done % step == 0) progress.say(fmt::format("rendered {} of {} pairs", done, all));
   };
-  return write_data_set(folder, simulation, options) == frames;
+  if (write_data_set(folder, simulation, options) < frames) return false;
+  write_text(folder / kRenderedFile, fmt::format("{} pairs\n", frames));
+  return true;
 }
 
 // Poses of the first segment in the world of the true first pose.

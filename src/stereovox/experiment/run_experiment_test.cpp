@@ -98,6 +98,22 @@ TEST_F(Experiment, ThatWasFinishedIsNotDoneAgain) {
   EXPECT_EQ(again.rows.size(), 10U);
 }
 
+TEST_F(Experiment, GoesOnWhereItWasStoppedWhileRendering) {
+  const ExperimentConfig config = read_experiment(folder_ / "e.yaml");
+  int asked = 0;
+  const auto stopped = run_experiment(config, folder_ / "out", folder_ / "cache", "build", 1,
+                                      {[](const std::string&) {}, [&] { return ++asked > 2; }});
+  EXPECT_TRUE(stopped.was_stopped);
+  EXPECT_TRUE(stopped.rows.empty());
+  const auto resumed = run("out").rows;
+  const auto whole = run_experiment(config, folder_ / "whole", folder_ / "other_cache", "build", 1,
+                                    {[](const std::string&) {}, [] { return false; }})
+                         .rows;
+  ASSERT_EQ(resumed.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    EXPECT_EQ(resumed[i].values.at("known_fraction"), whole[i].values.at("known_fraction"));
+}
+
 TEST_F(Experiment, UsesTheRenderedDriveForOtherMethods) {
   run("out");
   write(replaced("name: printed", "name: as printed"));

@@ -9,7 +9,7 @@
 namespace stereovox {
 
 // Free cells outside the largest piece of free space become unknown, then occupied cells without a
-// free cell among their eight neighbours.
+// free cell within 0.25 m, or among their eight neighbours when cells are larger.
 void forget_hidden_cells(OccupancyGrid2D& map);
 
 }  // namespace stereovox

@@ -7,8 +7,9 @@
 namespace stereovox {
 namespace {
 
-Drawing without_hidden(const Drawing& drawing) {
+Drawing without_hidden(const Drawing& drawing, double cell_size_m = 0.25) {
   OccupancyGrid2D map = drawn_grid(drawing);
+  map.geometry.cell_size_m = cell_size_m;
   forget_hidden_cells(map);
   return drawing_of(map);
 }
@@ -26,6 +27,11 @@ TEST(ForgetHiddenCells, TheFirstLayerOfObstaclesStaysAlsoAtCorners) {
 TEST(ForgetHiddenCells, SolidThingsKeepTheirOutline) {
   EXPECT_EQ(without_hidden({".......", ".#####.", ".#####.", ".#####.", "......."}),
             (Drawing{".......", ".#####.", ".#???#.", ".#####.", "......."}));
+}
+
+TEST(ForgetHiddenCells, SmallCellsMayLieBehindABandOfUncertainOnes) {
+  EXPECT_EQ(without_hidden({"..??#?#", "..??###"}, 0.1), (Drawing{"..??#??", "..??#??"}));
+  EXPECT_EQ(without_hidden({"..??#?#", "..??###"}, 0.05), (Drawing{"..??#?#", "..??###"}));
 }
 
 TEST(ForgetHiddenCells, AMapWithoutFreeSpaceShowsNothing) {
