@@ -63,7 +63,9 @@ std::mutex& building_mutex() {
 }  // namespace
 
 struct Scene::Embree {
-  explicit Embree(const TriangleMesh& mesh) {
+  Embree() = default;
+  // Delegates, so that what was made is released when the rest fails.
+  explicit Embree(const TriangleMesh& mesh) : Embree() {
     const std::scoped_lock lock(building_mutex());
     device = rtcNewDevice(nullptr);
     scene = device != nullptr ? rtcNewScene(device) : nullptr;
@@ -75,8 +77,8 @@ struct Scene::Embree {
   }
   ~Embree() {
     const std::scoped_lock lock(building_mutex());
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
   }
   Embree(const Embree&) = delete;
   Embree& operator=(const Embree&) = delete;
