@@ -50,12 +50,15 @@ void print_counts(const std::string& output, const OccupancyGrid2D& grid) {
 ExitCode run(const NavmapOptions& options) {
   const PipelineConfig config = options.config.load(shorthands(options));
   const VoxelMap map = read_voxel_map(options.map);
-  const auto blob = map.attachments.find(kSightLinesAttachment);
-  const SightLines sight_lines = blob == map.attachments.end()
-                                     ? SightLines{}
-                                     : sight_lines_from_bytes(blob->second, options.map);
-  const OccupancyGrid2D grid = write_navigation_map(options.output, map, sight_lines, {},
-                                                    config.navmap, mode_of(options.mode));
+  const auto attached = [&](const char* name, auto from_bytes) {
+    const auto blob = map.attachments.find(name);
+    using Evidence = decltype(from_bytes(blob->second, options.map));
+    return blob == map.attachments.end() ? Evidence{} : from_bytes(blob->second, options.map);
+  };
+  const OccupancyGrid2D grid = write_navigation_map(
+      options.output, map, attached(kSightLinesAttachment, sight_lines_from_bytes),
+      attached(kWallFacesAttachment, wall_faces_from_bytes), {}, config.navmap,
+      mode_of(options.mode));
   print_counts(options.output, grid);
   return ExitCode::ok;
 }

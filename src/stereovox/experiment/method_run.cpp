@@ -22,20 +22,21 @@ std::variant<MethodRun::Voxels, OctomapBaseline, MethodRun::Scans> MethodRun::st
     const MappingMethod& method, double cell_size_m, const HeightBand& band) {
   using State = std::variant<Voxels, OctomapBaseline, Scans>;
   return std::visit(
-      Overloaded{[&](OccupancyMethod params) -> State {
-                   params.occupancy.voxel_size_m = cell_size_m;
-                   params.navmap.min_height_m = band.min_m;
-                   params.navmap.max_height_m = band.max_m;
-                   return Voxels{params, VoxelMap(cell_size_m, kFloor_m), SightLines{}};
-                 },
-                 [&](OctomapBaselineParams params) -> State {
-                   params.voxel_size_m = cell_size_m;
-                   // It takes each voxel that touches its band; ours counts by centres.
-                   params.min_height_m = band.min_m + cell_size_m / 2;
-                   params.max_height_m = band.max_m - cell_size_m / 2;
-                   return OctomapBaseline(params);
-                 },
-                 [](const auto& params) -> State { return Scans{params}; }},
+      Overloaded{
+          [&](OccupancyMethod params) -> State {
+            params.occupancy.voxel_size_m = cell_size_m;
+            params.navmap.min_height_m = band.min_m;
+            params.navmap.max_height_m = band.max_m;
+            return Voxels{params, VoxelMap(cell_size_m, kFloor_m), SightLines{}, WallFaces{}};
+          },
+          [&](OctomapBaselineParams params) -> State {
+            params.voxel_size_m = cell_size_m;
+            // It takes each voxel that touches its band; ours counts by centres.
+            params.min_height_m = band.min_m + cell_size_m / 2;
+            params.max_height_m = band.max_m - cell_size_m / 2;
+            return OctomapBaseline(params);
+          },
+          [](const auto& params) -> State { return Scans{params}; }},
       method);
 }
 
@@ -51,6 +52,11 @@ void MethodRun::add(const MethodFrame& frame) {
                                           frame.stamp_ns, v.method.occupancy, 1, v.map);
                             v.sight_lines.observe(v.map, frame.T_world_camera.translation.head<2>(),
                                                   update.hits, v.method.navmap);
+                            if (v.method.navmap.uses_faces())
+                              v.wall_faces.observe(
+                                  view_frame(frame.disparity, frame.camera, frame.T_world_camera,
+                                             frame.stamp_ns, v.method.occupancy, v.map),
+                                  kFloor_m, v.method.navmap);
                           },
                           [&](OctomapBaseline& tree) {
                             tree.integrate(frame.disparity, frame.camera, frame.T_world_camera);
@@ -68,8 +74,9 @@ OccupancyGrid2D MethodRun::map(std::span<const PseudoScan> scans,
   OccupancyGrid2D map = timed(duration, [&] {
     return std::visit(
         Overloaded{[&](const Voxels& v) {
-                     return extended_to(project_to_2d(v.map, v.sight_lines, v.method.navmap),
-                                        geometry);
+                     return extended_to(
+                         project_to_2d(v.map, v.sight_lines, v.method.navmap, v.wall_faces),
+                         geometry);
                    },
                    [&](const OctomapBaseline& tree) { return tree.map(geometry, kFloor_m); },
                    [&](const Scans& s) { return build_map(scans, geometry, s.paradigm); }},

@@ -9,6 +9,7 @@
 #include "stereovox/baselines/pseudo_scan.h"
 #include "stereovox/experiment/experiment_config.h"
 #include "stereovox/navmap/sight_lines.h"
+#include "stereovox/navmap/wall_faces.h"
 #include "stereovox/occupancy/voxel_map.h"
 
 namespace stereovox {
@@ -39,6 +40,7 @@ class MethodRun {
     OccupancyMethod method;
     VoxelMap map;
     SightLines sight_lines;
+    WallFaces wall_faces;
   };
   struct Scans {
     Paradigm paradigm;

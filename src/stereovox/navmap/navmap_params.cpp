@@ -11,6 +11,7 @@ namespace {
 // the points' error leaves faint evidence, stays above.
 constexpr double kTunedFreeThreshold = 0.25;
 constexpr double kTunedWallContrast = 0.1;
+constexpr double kTunedSureState = 0.75;
 
 }  // namespace
 
@@ -46,6 +47,7 @@ void NavmapParams::describe(ParameterList& list) {
                 label_rule = literal ? LabelRule::as_printed : LabelRule::visible;
                 wall_contrast =
                     p == NavmapPreset::tuned ? kTunedWallContrast : NavmapParams{}.wall_contrast;
+                sure_state = p == NavmapPreset::tuned ? kTunedSureState : NavmapParams{}.sure_state;
                 hidden_cells = p == NavmapPreset::tuned ? HiddenCells::unknown : HiddenCells::keep;
               });
   list("column", column, "which voxels above a cell count: all, or those in the height band");
@@ -61,6 +63,9 @@ void NavmapParams::describe(ParameterList& list) {
   list("label_rule", label_rule, "which cells become free");
   list("wall_contrast", wall_contrast, {0, 1},
        "a cell before an obstacle whose state is higher by more than this is free; 1 = never");
+  list("sure_state", sure_state, {0, 1},
+       "a cell before an obstacle with a smaller state is as free or occupied as the mean place of "
+       "the surface's points says; 0 = the contrast decides");
   list("hidden_cells", hidden_cells,
        "free space apart from the robot's, and obstacles that touch no free space");
 }

@@ -6,8 +6,8 @@
 
 namespace stereovox {
 
-// What sets column, min_observations, free_threshold, label_rule, wall_contrast and hidden_cells
-// together; what is set after it stays.
+// What sets column, min_observations, free_threshold, label_rule, wall_contrast, sure_state and
+// hidden_cells together; what is set after it stays.
 enum class NavmapPreset {
   literal,    // as the paper prints it
   corrected,  // its errors mended
@@ -44,7 +44,12 @@ struct NavmapParams {
   double hysteresis = 0.0;
   LabelRule label_rule = LabelRule::visible;
   double wall_contrast = 1.0;
+  double sure_state = 0.0;
   HiddenCells hidden_cells = HiddenCells::keep;
+
+  // Whether the layers of cells before obstacles are looked at (thin_walls.h).
+  bool thins_walls() const { return wall_contrast < 1.0 || uses_faces(); }
+  bool uses_faces() const { return sure_state > 0.0; }
 
   void describe(ParameterList& list);
 };

@@ -47,7 +47,7 @@ CellLabel label_of(const ColumnState& column, bool is_held, const NavmapParams& 
 }  // namespace
 
 OccupancyGrid2D project_to_2d(const VoxelMap& map, const SightLines& sight_lines,
-                              const NavmapParams& params) {
+                              const NavmapParams& params, const WallFaces& faces) {
   validate(params);
   const CellBounds bounds = bounds_of(map, sight_lines, params);
   OccupancyGrid2D grid = unknown_grid(geometry_of(bounds, map.voxel_size_m()), "map");
@@ -66,7 +66,7 @@ OccupancyGrid2D project_to_2d(const VoxelMap& map, const SightLines& sight_lines
     CellLabel& label = grid.labels[grid.position_of(cell - bounds.min)];
     if (label == CellLabel::unknown) label = CellLabel::free;
   });
-  if (params.wall_contrast < 1.0) thin_walls(grid, params.wall_contrast);
+  if (params.thins_walls()) thin_walls(grid, faces, params);
   if (params.hidden_cells == HiddenCells::unknown) forget_hidden_cells(grid);
   return grid;
 }

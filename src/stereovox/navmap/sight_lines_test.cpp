@@ -188,7 +188,7 @@ TEST(SightLines, SurviveTheirBytes) {
   EXPECT_EQ(before, after);
   EXPECT_EQ(after.free_cells().tiles().size(), 3U);
   EXPECT_EQ(after.held_cells().tiles().size(), 2U);
-  EXPECT_EQ(sight_lines_from_bytes(to_bytes({}), "map.svx"), SightLines{});
+  EXPECT_EQ(sight_lines_from_bytes(to_bytes(SightLines{}), "map.svx"), SightLines{});
 }
 
 std::string complaint_about(const std::string& bytes) {

@@ -7,36 +7,55 @@
 namespace stereovox {
 namespace {
 
+// A cell with less is not what the points near its border speak of.
+constexpr float kMinReachedState = 0.2F;
+
 bool is_inside(const GridGeometry& geometry, const Eigen::Vector2i& cell) {
   return cell.x() >= 0 && cell.y() >= 0 && cell.x() < geometry.width && cell.y() < geometry.height;
 }
 
-// Whether `step` leads to free space, and away from it lies stronger evidence.
-bool is_spread(const OccupancyGrid2D& map, const Eigen::Vector2i& cell, const Eigen::Vector2i& step,
-               double contrast) {
-  const Eigen::Vector2i before = cell + step, behind = cell - step;
-  if (!is_inside(map.geometry, before) || !is_inside(map.geometry, behind)) return false;
-  return map.label_at(before) == CellLabel::free && map.label_at(behind) == CellLabel::occupied &&
-         map.states[map.position_of(behind)] > map.states[map.position_of(cell)] + contrast;
+// A cell with free space before it and an obstacle behind it; `step` leads to the free space.
+struct Front {
+  Eigen::Vector2i cell, step;
+};
+
+bool is_front(const OccupancyGrid2D& map, const Front& front) {
+  const Eigen::Vector2i before = front.cell + front.step, behind = front.cell - front.step;
+  return is_inside(map.geometry, before) && is_inside(map.geometry, behind) &&
+         map.label_at(before) == CellLabel::free && map.label_at(behind) == CellLabel::occupied;
+}
+
+CellLabel label_of(const OccupancyGrid2D& map, const Front& front, const WallFaces& faces,
+                   const NavmapParams& params) {
+  const CellLabel label = map.label_at(front.cell);
+  const double state = map.states[map.position_of(front.cell)];
+  const Eigen::Vector2i first_cell =
+      (map.geometry.origin_m / map.geometry.cell_size_m).array().round().cast<int>();
+  const auto reach_m = faces.reach_m(first_cell + front.cell, front.step);
+  if (label == CellLabel::occupied) {
+    const double behind = map.states[map.position_of(front.cell - front.step)];
+    const bool is_spread = reach_m ? *reach_m < 0.0 && state < params.sure_state
+                                   : behind > state + params.wall_contrast;
+    return is_spread ? CellLabel::free : label;
+  }
+  return reach_m && *reach_m > 0.0 && state > kMinReachedState ? CellLabel::occupied : label;
 }
 
 }  // namespace
 
-void thin_walls(OccupancyGrid2D& map, double contrast) {
+void thin_walls(OccupancyGrid2D& map, const WallFaces& faces, const NavmapParams& params) {
   static const std::array<Eigen::Vector2i, 4> kSteps = {
       Eigen::Vector2i(1, 0), Eigen::Vector2i(-1, 0), Eigen::Vector2i(0, 1), Eigen::Vector2i(0, -1)};
-  std::vector<std::size_t> spread;
+  std::vector<CellLabel> labels = map.labels;
   for (int y = 0; y < map.geometry.height; ++y)
-    for (int x = 0; x < map.geometry.width; ++x) {
-      const Eigen::Vector2i cell(x, y);
-      if (map.label_at(cell) != CellLabel::occupied) continue;
-      for (const Eigen::Vector2i& step : kSteps)
-        if (is_spread(map, cell, step, contrast)) {
-          spread.push_back(map.position_of(cell));
-          break;
-        }
-    }
-  for (const std::size_t position : spread) map.labels[position] = CellLabel::free;
+    for (int x = 0; x < map.geometry.width; ++x)
+      for (const Eigen::Vector2i& step : kSteps) {
+        const Front front{{x, y}, step};
+        if (!is_front(map, front)) continue;
+        const CellLabel label = label_of(map, front, faces, params);
+        if (label != map.label_at(front.cell)) labels[map.position_of(front.cell)] = label;
+      }
+  map.labels = std::move(labels);
 }
 
 }  // namespace stereovox

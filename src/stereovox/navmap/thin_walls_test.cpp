@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "stereovox/navmap/drawn_map_for_test.h"
+#include "stereovox/occupancy/scene_for_test.h"
 
 namespace stereovox {
 namespace {
@@ -17,7 +18,7 @@ Drawing thinned(const Drawing& drawing, const std::vector<float>& states) {
     for (int x = 0; x < map.geometry.width; ++x)
       if (map.label_at({x, y}) == CellLabel::occupied)
         map.states[map.position_of({x, y})] = states.at(next++);
-  thin_walls(map, kContrast);
+  thin_walls(map, {}, {.wall_contrast = kContrast});
   return drawing_of(map);
 }
 
@@ -41,6 +42,47 @@ TEST(ThinWalls, BothSidesOfAThickWallAreLookedAtBeforeAnyCellChanges) {
 
 TEST(ThinWalls, CellsAtTheBorderOfTheMapStay) {
   EXPECT_EQ(thinned({"##", ".."}, {0.6F, 0.9F}), (Drawing{"##", ".."}));
+}
+
+// --- With the mean places of surfaces: a wall along y, seen by cameras before and behind it. ---
+
+constexpr double kCell_m = 0.25;
+
+// Faces of a wall that a camera at x = 0 sees at `wall_x_m`.
+WallFaces faces_of_wall(double wall_x_m) {
+  OccupancyParams occupancy;
+  occupancy.voxel_size_m = kCell_m;
+  VoxelMap map(kCell_m);
+  const DisparityImage image = scene::wall_at(wall_x_m);
+  const RectifiedCamera camera = scene::camera();
+  WallFaces faces;
+  for (int frame = 0; frame < 5; ++frame)
+    faces.observe(
+        view_frame(image, camera, scene::level_pose(), frame * scene::kSecond_ns, occupancy, map),
+        0.0, {});
+  return faces;
+}
+
+// One row of cells, of which the first is number 5 along x; the border between the last two is at
+// 2 m. `state`: of the last but one.
+Drawing placed(const std::string& row, float state, double wall_x_m) {
+  OccupancyGrid2D map = drawn_grid({row}, kCell_m, {5 * kCell_m, 0});
+  map.states[map.position_of({2, 0})] = state;
+  thin_walls(map, faces_of_wall(wall_x_m), {.sure_state = 0.75});
+  return drawing_of(map);
+}
+
+TEST(ThinWalls, TheMeanOfThePointsTellsTheLayer) {
+  EXPECT_EQ(placed("..##", 0.6F, 1.98), (Drawing{"..##"}));
+  EXPECT_EQ(placed("..##", 0.6F, 2.02), (Drawing{"...#"}));
+  EXPECT_EQ(placed("...#", 0.4F, 1.98), (Drawing{"..##"}));
+  EXPECT_EQ(placed("..?#", 0.4F, 1.98), (Drawing{"..##"}));
+  EXPECT_EQ(placed("...#", 0.4F, 2.02), (Drawing{"...#"}));
+}
+
+TEST(ThinWalls, ACellThatIsSureStaysAndAnEmptyOneIsNotFilled) {
+  EXPECT_EQ(placed("..##", 0.8F, 2.02), (Drawing{"..##"}));
+  EXPECT_EQ(placed("...#", 0.1F, 1.98), (Drawing{"...#"}));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "stereovox/core/trajectory.h"
 #include "stereovox/dataset/stereo_sequence.h"
 #include "stereovox/navmap/sight_lines.h"
+#include "stereovox/navmap/wall_faces.h"
 #include "stereovox/occupancy/voxel_map.h"
 #include "stereovox/pipeline/pipeline_config.h"
 #include "stereovox/pipeline/stage_times.h"
@@ -24,6 +25,7 @@ struct MapSegment {
   WorldFrame world;
   VoxelMap map;
   SightLines sight_lines;
+  WallFaces wall_faces;
   Trajectory trajectory;  // T_world_camera of every frame that was mapped
 };
 

@@ -16,7 +16,8 @@ constexpr std::int64_t kPoseTolerance_ns = 1'000'000;
 constexpr std::int64_t kMaxPoseGap_ns = 250'000'000;
 
 MapSegment empty_segment(int id, const WorldFrame& world, double voxel_size_m) {
-  return {id, world, VoxelMap(voxel_size_m, world.floor_z_m), SightLines{}, Trajectory{}};
+  return {id,           world,       VoxelMap(voxel_size_m, world.floor_z_m),
+          SightLines{}, WallFaces{}, Trajectory{}};
 }
 
 }  // namespace
@@ -126,6 +127,10 @@ void MapBuilder::map(const Located& located, MapSegment& segment) {
   const Stopwatch watch;
   segment.sight_lines.observe(segment.map, T_world_camera.translation.head<2>(), update.hits,
                               config_.navmap);
+  if (config_.navmap.uses_faces())
+    segment.wall_faces.observe(view_frame(located.frame.disparity, rectifier_.camera(),
+                                          T_world_camera, stamp_ns, config_.occupancy, segment.map),
+                               segment.map.floor_z_m(), config_.navmap);
   result_.times.add("occupancy", occupancy);
   result_.times.add("navmap", watch.elapsed());
   segment.trajectory.push_back({stamp_ns, T_world_camera});

@@ -61,9 +61,11 @@ void write_segment(const fs::path& folder, const PipelineConfig& config, MapSegm
   make_folder(folder);
   segment.map.attachments["config.yaml"] = yaml_without_threads(config);
   segment.map.attachments[kSightLinesAttachment] = to_bytes(segment.sight_lines);
+  if (!segment.wall_faces.is_empty())
+    segment.map.attachments[kWallFacesAttachment] = to_bytes(segment.wall_faces);
   write_voxel_map(folder / "map.svx", segment.map);
-  write_navigation_map(folder / "nav.yaml", segment.map, segment.sight_lines, segment.trajectory,
-                       config.navmap, MapServerMode::trinary);
+  write_navigation_map(folder / "nav.yaml", segment.map, segment.sight_lines, segment.wall_faces,
+                       segment.trajectory, config.navmap, MapServerMode::trinary);
   write_tum(folder / "trajectory.tum", segment.trajectory,
             "left rectified camera (x right, y down, z forward) in the world (z up)");
   write_kitti_poses(folder / "trajectory_kitti.txt", segment.trajectory);
@@ -90,9 +92,10 @@ void write_outputs(const fs::path& folder, const StereoSequence& sequence,
 }
 
 OccupancyGrid2D write_navigation_map(const fs::path& yaml_path, const VoxelMap& map,
-                                     const SightLines& sight_lines, const Trajectory& trajectory,
-                                     const NavmapParams& params, MapServerMode mode) {
-  const OccupancyGrid2D grid = project_to_2d(map, sight_lines, params);
+                                     const SightLines& sight_lines, const WallFaces& wall_faces,
+                                     const Trajectory& trajectory, const NavmapParams& params,
+                                     MapServerMode mode) {
+  const OccupancyGrid2D grid = project_to_2d(map, sight_lines, params, wall_faces);
   std::vector<Eigen::Vector2d> path;
   for (const StampedPose& pose : trajectory)
     path.emplace_back(pose.T_world_camera.translation.head<2>());

@@ -26,7 +26,8 @@ void write_outputs(const std::filesystem::path& folder, const StereoSequence& se
 // The navigation map of a voxel map under `yaml_path`, its image (.pgm) and a picture for people
 // (.png) beside it.
 OccupancyGrid2D write_navigation_map(const std::filesystem::path& yaml_path, const VoxelMap& map,
-                                     const SightLines& sight_lines, const Trajectory& trajectory,
+                                     const SightLines& sight_lines, const WallFaces& wall_faces,
+                                     const Trajectory& trajectory,
                                      const NavmapParams& params, MapServerMode mode);
 
 }  // namespace stereovox

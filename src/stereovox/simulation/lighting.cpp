@@ -72,7 +72,7 @@ std::vector<LitBy> without_shadows(const Scene& scene, std::span<const Seen> see
 }
 
 void cast_shadows(const Scene& scene, std::span<const Seen> seen, std::vector<LitBy>& lit) {
-  std::vector<Segment> segments;
+  std::vector<LightPath> segments;
   std::vector<float*> lights;
   for (std::size_t k = 0; k < kLampsPerPoint; ++k)
     for (std::size_t i = 0; i < seen.size(); ++i) {

@@ -158,7 +158,7 @@ cv::Mat1b occluded_pixels(const Scene& scene, const PixelRays& left, const cv::M
       (T_world_left * Eigen::Vector3d(pair.baseline_m, 0, 0)).cast<float>();
   cv::Mat1b occluded(left.height(), left.width());
   parallel_for(0, left.height(), threads, [&](int v) {
-    std::vector<Segment> segments;
+    std::vector<LightPath> segments;
     for (int u = 0; u < left.width(); ++u) {
       const Ray ray = camera.ray(static_cast<float>(u), static_cast<float>(v));
       segments.push_back({ray.origin_m + left_depth_m(v, u) * ray.direction, right_center_m});

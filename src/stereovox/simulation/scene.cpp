@@ -167,16 +167,16 @@ void Scene::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
   }
 }
 
-void Scene::block(std::span<const Segment> segments, std::span<char> is_blocked) const {
-  assert(segments.size() == is_blocked.size());
+void Scene::block(std::span<const LightPath> paths, std::span<char> is_blocked) const {
+  assert(paths.size() == is_blocked.size());
   RTCRay8 packet{};
-  for (std::size_t first = 0; first < segments.size(); first += kLanes) {
-    const std::size_t count = std::min<std::size_t>(kLanes, segments.size() - first);
+  for (std::size_t first = 0; first < paths.size(); first += kLanes) {
+    const std::size_t count = std::min<std::size_t>(kLanes, paths.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
-      const Segment& segment = segments[first + i];
-      const Eigen::Vector3f way = segment.to_m - segment.from_m;
+      const LightPath& path = paths[first + i];
+      const Eigen::Vector3f way = path.to_m - path.from_m;
       const float margin = kSurfaceOffset_m / std::max(way.norm(), kSurfaceOffset_m);
-      set_lane(packet, i, {segment.from_m, way}, margin, 1.0F - margin);
+      set_lane(packet, i, {path.from_m, way}, margin, 1.0F - margin);
     }
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);

@@ -23,7 +23,7 @@ struct Hit {
   bool is_there() const { return solid >= 0; }
 };
 
-struct Segment {
+struct LightPath {
   Eigen::Vector3f from_m, to_m;
 };
 
@@ -42,8 +42,8 @@ class Scene {
 
   // hits[i] belongs to rays[i]; both lists have the same length.
   void cast(std::span<const Ray> rays, std::span<Hit> hits) const;
-  // is_blocked[i]: whether something stands between the ends of segments[i].
-  void block(std::span<const Segment> segments, std::span<char> is_blocked) const;
+  // is_blocked[i]: whether something stands between the ends of paths[i].
+  void block(std::span<const LightPath> paths, std::span<char> is_blocked) const;
 
  private:
   struct Embree;

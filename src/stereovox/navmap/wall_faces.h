@@ -1,0 +1,73 @@
+// Where surfaces lie near the borders between cells, to a fraction of a cell. A surface a few
+// centimetres from a border puts points into the cells on both sides of it, because each has an
+// error; the states of both rise, and only the mean of the points tells in which of them it is.
+//
+//   WallFaces faces;
+//   for each frame: faces.observe(frame, params);
+//   map.attachments[kWallFacesAttachment] = to_bytes(faces);
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "stereovox/navmap/cell_set.h"
+#include "stereovox/navmap/navmap_params.h"
+#include "stereovox/occupancy/frame_view.h"
+
+namespace stereovox {
+
+inline constexpr const char* kWallFacesAttachment = "wall_faces";
+
+// The mean of what was measured within half a cell of one border from one side of it, weighted by
+// the inverse variance of each point's range.
+struct WallFace {
+  float mean_m = 0.0F;              // along the axis, from the border
+  float information_per_m2 = 0.0F;  // sum of the weights, saturating; 0 = never seen
+
+  void add(double offset_m, double weight_per_m2);
+  bool operator==(const WallFace&) const = default;
+};
+
+class WallFaces {
+ public:
+  // Adds the points of a frame that are exact against the voxel (is_exact) and at the heights that
+  // count. To be called after the frame has been integrated.
+  void observe(const FrameView& frame, double floor_z_m, const NavmapParams& params);
+
+  // How far a surface that is seen from the side to which `step` (a unit step along an axis) leads
+  // reaches into `cell` across the border with the cell on the other side, in metres; negative when
+  // it stays behind the border. Nothing when too little is known.
+  std::optional<double> reach_m(const Eigen::Vector2i& cell, const Eigen::Vector2i& step) const;
+
+  bool is_empty() const { return tiles_.empty(); }
+  bool operator==(const WallFaces&) const = default;
+
+ private:
+  friend std::string to_bytes(const WallFaces& faces);
+  friend WallFaces wall_faces_from_bytes(std::string_view bytes, const std::string& source);
+
+  // Of each cell, the border at its lower end: along x seen from below and from above, then along
+  // y.
+  static constexpr int kFacesPerCell = 4;
+  using Tile = std::array<WallFace, kCellsPerTile * kFacesPerCell>;
+
+  static std::size_t place_of(const Eigen::Vector2i& cell, int axis, bool is_from_above) {
+    return static_cast<std::size_t>(position_in_tile(cell) * kFacesPerCell + 2 * axis +
+                                    (is_from_above ? 1 : 0));
+  }
+
+  void add(const PointMeasurement& point, double cell_size_m);
+
+  std::map<TileIndex, Tile> tiles_;
+};
+
+// For VoxelMap::attachments. Equal faces have equal bytes.
+std::string to_bytes(const WallFaces& faces);
+
+// Throws Error "<source>: ..." when the bytes are not what to_bytes writes.
+WallFaces wall_faces_from_bytes(std::string_view bytes, const std::string& source);
+
+}  // namespace stereovox
