@@ -134,7 +134,7 @@ void update_block(const Rule& rule, const FrameChange& change, std::span<const i
   const PaddedObservations padded(change.observation, seen);
   AgeFactor<Rule> age_factor(rule);
   for_each_in(seen.observed, [&](int i) {
-    Voxel& voxel = block.voxels[static_cast<std::size_t>(i)];
+    Voxel voxel = block.voxels[static_cast<std::size_t>(i)];
     const double H =
         padded.is_uniform() ? 0.0 : padded.heterogeneity_at(i, params.homogeneity, neighbours);
     const double k = rule.credibility({.prior_observations = voxel.observations,
@@ -142,6 +142,7 @@ void update_block(const Rule& rule, const FrameChange& change, std::span<const i
                                        .age_factor = age_factor.of(voxel, stamp_ms),
                                        .frames_before = frames_before});
     update_voxel(seen.value_at(i), k, params.initial_state, stamp_ms, voxel);
+    block.voxels.set(static_cast<std::size_t>(i), voxel);
   });
 }
 
@@ -157,8 +158,9 @@ template <AddingRule Rule>
 void update_map(const Rule& rule, const FrameChange& change, const VoxelMap&) {
   for_each_block(change, [&](std::size_t, const BlockObservation& seen, VoxelBlock& block) {
     for_each_in(seen.observed, [&](int i) {
-      Voxel& voxel = block.voxels[static_cast<std::size_t>(i)];
+      Voxel voxel = block.voxels[static_cast<std::size_t>(i)];
       store(rule.after(belief_of(voxel), seen.value_at(i)), change.frame.stamp_ms, voxel);
+      block.voxels.set(static_cast<std::size_t>(i), voxel);
     });
   });
 }
@@ -169,8 +171,10 @@ void update_map(const VisibilityRule& rule, const FrameChange& change, const Vox
   for_each_block(change, [&](std::size_t number, const BlockObservation& seen, VoxelBlock& block) {
     for_each_in(seen.observed, [&](int i) {
       const auto at = static_cast<std::size_t>(i);
+      Voxel voxel = block.voxels[at];
       update_voxel(rule, seen.value_at(i), static_cast<double>(visibility[number][at]),
-                   change.frame.stamp_ms, block.voxels[at]);
+                   change.frame.stamp_ms, voxel);
+      block.voxels.set(at, voxel);
     });
   });
 }

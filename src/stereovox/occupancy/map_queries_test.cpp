@@ -11,9 +11,7 @@ namespace {
 constexpr double kSize_m = 0.1;
 
 void set(VoxelMap& map, const Eigen::Vector3i& voxel, float state, std::uint16_t observations = 5) {
-  map.find_or_create_block(block_of(voxel))
-      .voxels[static_cast<std::size_t>(position_in_block(voxel))] = {
-      .state = state, .last_seen_ms = 0, .observations = observations};
+  map.set(voxel, {.state = state, .last_seen_ms = 0, .observations = observations});
 }
 
 // A free corridor along x from voxel 0 to 19 that ends at an occupied voxel.
