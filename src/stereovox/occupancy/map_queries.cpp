@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "stereovox/core/grid_geometry.h"
+#include "stereovox/occupancy/homogeneity.h"
 
 namespace stereovox {
 namespace {
@@ -66,6 +67,22 @@ class VoxelWalk {
 double distance2(const Eigen::Vector3d& p, const Eigen::Vector3d& low,
                  const Eigen::Vector3d& high) {
   return (p - p.cwiseMax(low).cwiseMin(high)).squaredNorm();
+}
+
+// Calls visit(block) for the blocks `shell` steps from the one in the middle, counted along the
+// axis on which they are farthest.
+template <class Visit>
+void for_each_in_shell(const Eigen::Vector3i& center, int shell, Visit visit) {
+  for (int x = -shell; x <= shell; ++x)
+    for (int y = -shell; y <= shell; ++y) {
+      const bool is_wall = std::abs(x) == shell || std::abs(y) == shell;
+      const int step = is_wall || shell == 0 ? 1 : 2 * shell;
+      for (int z = -shell; z <= shell; z += step) visit(center + Eigen::Vector3i(x, y, z));
+    }
+}
+
+bool contains(const VoxelBounds& box, const Eigen::Vector3i& voxel) {
+  return (voxel.array() >= box.min.array()).all() && (voxel.array() <= box.max.array()).all();
 }
 
 }  // namespace
@@ -132,6 +149,38 @@ bool MapQueries::collides(const Eigen::Vector3d& low_world, const Eigen::Vector3
   return false;
 }
 
+std::optional<Obstacle> MapQueries::nearest_obstacle(const Eigen::Vector3d& p_world,
+                                                     double range_m) const {
+  const double block_m = map_.voxel_size_m() * kBlockSide;
+  const Eigen::Vector3i center = block_of(voxel_index_of(map_.voxel_size_m(), p_world));
+  std::optional<Obstacle> nearest;
+  const auto reach = [&] { return nearest ? nearest->distance_m : range_m; };
+  // A block of shell s is farther than (s - 1) blocks.
+  for (int shell = 0; (shell - 1) * block_m <= reach(); ++shell)
+    for_each_in_shell(center, shell, [&](const Eigen::Vector3i& index) {
+      const Eigen::Vector3d low = index.cast<double>() * block_m;
+      if (distance2(p_world, low, (low.array() + block_m).matrix()) > reach() * reach()) return;
+      if (const VoxelBlock* const block = map_.find_block(index))
+        search_nearest(*block, p_world, range_m, nearest);
+    });
+  return nearest;
+}
+
+void MapQueries::search_nearest(const VoxelBlock& block, const Eigen::Vector3d& p_world,
+                                double range_m, std::optional<Obstacle>& nearest) const {
+  const double size_m = map_.voxel_size_m();
+  for (int i = 0; i < kVoxelsPerBlock; ++i) {
+    if (!is_obstacle(state_of(block.voxels[static_cast<std::size_t>(i)]))) continue;
+    const Eigen::Vector3i voxel = voxel_at(block.index, i);
+    const Eigen::Vector3d low = voxel.cast<double>() * size_m;
+    const double distance_m = std::sqrt(distance2(p_world, low, (low.array() + size_m).matrix()));
+    if (distance_m > range_m) continue;
+    if (!nearest || distance_m < nearest->distance_m ||
+        (distance_m == nearest->distance_m && LatticeOrder{}(voxel, nearest->voxel)))
+      nearest = Obstacle{voxel, distance_m};
+  }
+}
+
 bool MapQueries::box_collides(const Eigen::Vector3d& low_world,
                               const Eigen::Vector3d& high_world) const {
   return collides(low_world, high_world,
@@ -144,6 +193,29 @@ bool MapQueries::ball_collides(const Eigen::Vector3d& center_world, double radiu
                   [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
                     return distance2(center_world, low, high) <= radius_m * radius_m;
                   });
+}
+
+std::vector<Eigen::Vector3i> frontier_voxels(const VoxelMap& map, const QueryParams& params,
+                                             const VoxelBounds& box) {
+  const MapQueries queries(map, params);
+  NearbyVoxels voxels(map);
+  std::vector<Eigen::Vector3i> frontier;
+  const auto is_unknown = [&](const Eigen::Vector3i& voxel) {
+    return queries.state_of(voxels.at(voxel)) == VoxelState::unknown;
+  };
+  for (const VoxelBlock* const block : map.blocks_in(box))
+    for (int i = 0; i < kVoxelsPerBlock; ++i) {
+      const Eigen::Vector3i voxel = voxel_at(block->index, i);
+      if (!contains(box, voxel) ||
+          queries.state_of(block->voxels[static_cast<std::size_t>(i)]) != VoxelState::free)
+        continue;
+      if (std::ranges::any_of(
+              neighbour_steps(Neighbourhood::faces),
+              [&](const Eigen::Vector3i& step) { return is_unknown(voxel + step); }))
+        frontier.push_back(voxel);
+    }
+  std::ranges::sort(frontier, LatticeOrder{});
+  return frontier;
 }
 
 }  // namespace stereovox

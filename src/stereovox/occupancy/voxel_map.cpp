@@ -180,11 +180,28 @@ std::vector<const VoxelBlock*> VoxelMap::sorted_blocks() const {
   return sorted;
 }
 
+// Asks for each place of the box, or goes through the tiles when they are fewer.
+std::vector<VoxelTile*> VoxelMap::tiles_in(const VoxelBounds& box) const {
+  const Eigen::Vector3i low = tile_of(block_of(box.min)), high = tile_of(block_of(box.max));
+  const Eigen::Array3d counts = (high - low).cast<double>().array() + 1.0;
+  std::vector<VoxelTile*> inside;
+  if (counts.prod() > static_cast<double>(tiles_.size())) {
+    constexpr int kSide = kTileSide * kBlockSide;
+    for (const auto& tile : tiles_)
+      if (overlaps(box, tile->index * kSide, kSide)) inside.push_back(tile.get());
+    return inside;
+  }
+  for (int x = low.x(); x <= high.x(); ++x)
+    for (int y = low.y(); y <= high.y(); ++y)
+      for (int z = low.z(); z <= high.z(); ++z)
+        if (VoxelTile* const tile = find_tile({x * kTileSide, y * kTileSide, z * kTileSide}))
+          inside.push_back(tile);
+  return inside;
+}
+
 std::vector<const VoxelBlock*> VoxelMap::blocks_in(const VoxelBounds& box) const {
   std::vector<const VoxelBlock*> inside;
-  for (const auto& tile : tiles_) {
-    constexpr int kSide = kTileSide * kBlockSide;
-    if (!overlaps(box, tile->index * kSide, kSide)) continue;
+  for (VoxelTile* const tile : tiles_in(box)) {
     if (tile->is_out) bring_back(*tile);
     for (const VoxelBlock* const block : blocks_of(tile->blocks))
       if (overlaps(box, block->index * kBlockSide, kBlockSide)) inside.push_back(block);

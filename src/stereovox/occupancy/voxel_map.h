@@ -109,6 +109,7 @@ class VoxelMap {
   VoxelTile* find_tile(const Eigen::Vector3i& block_index) const;
   VoxelTile& find_or_create_tile(const Eigen::Vector3i& block_index);
   std::vector<VoxelTile*> sorted_tiles() const;
+  std::vector<VoxelTile*> tiles_in(const VoxelBounds& box) const;
   TileBlocks read_stored(const VoxelTile& tile) const;
   void bring_back(VoxelTile& tile) const;
   void put_out(VoxelTile& tile);

@@ -87,5 +87,45 @@ TEST(VoxelMap, RefusesImpossibleSizes) {
     EXPECT_THROW(VoxelMap map(size_m), Error) << size_m;
 }
 
+std::vector<Eigen::Vector3i> places_of(const std::vector<const VoxelBlock*>& blocks) {
+  std::vector<Eigen::Vector3i> places;
+  for (const VoxelBlock* block : blocks) places.push_back(block->index);
+  return places;
+}
+
+TEST(VoxelMap, BlocksInABoxAreThoseThatItTouches) {
+  std::mt19937 random(4);
+  std::uniform_int_distribution<int> place(-20, 20), voxel(-200, 200);
+  VoxelMap map(0.05);
+  for (int i = 0; i < 2000; ++i)
+    map.find_or_create_block({place(random), place(random), place(random)});
+  for (int trial = 0; trial < 50; ++trial) {
+    const Eigen::Vector3i a(voxel(random), voxel(random), voxel(random));
+    const VoxelBounds box{a, a + Eigen::Vector3i::Constant(trial)};
+    std::vector<Eigen::Vector3i> expected;
+    for (const VoxelBlock* block : map.sorted_blocks()) {
+      const Eigen::Array3i low = block->index.array() * kBlockSide;
+      if ((low + kBlockSide > box.min.array()).all() && (low <= box.max.array()).all())
+        expected.push_back(block->index);
+    }
+    EXPECT_EQ(places_of(map.blocks_in(box)), expected);
+  }
+}
+
+TEST(VoxelMap, TellsWhichBlocksChangedSinceAStamp) {
+  VoxelMap map(0.05);
+  set(map, {0, 0, 0}, 0.5F);
+  set(map, {100, 0, 0}, 0.5F);
+  EXPECT_EQ(map.blocks_changed_since(0).size(), 2U);
+  const ChangeStamp stamp = map.change_stamp();
+  EXPECT_TRUE(map.blocks_changed_since(stamp).empty());
+  set(map, {100, 0, 0}, 0.6F);
+  set(map, {-1, 0, 0}, 0.6F);
+  map.erase_block({0, 0, 0});
+  EXPECT_THAT(map.blocks_changed_since(stamp),
+              testing::ElementsAre(Eigen::Vector3i(-1, 0, 0), Eigen::Vector3i(0, 0, 0),
+                                   Eigen::Vector3i(12, 0, 0)));
+}
+
 }  // namespace
 }  // namespace stereovox
