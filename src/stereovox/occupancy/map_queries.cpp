@@ -16,50 +16,55 @@ class NearbyVoxels {
  public:
   explicit NearbyVoxels(const VoxelMap& map) : map_(map) {}
 
-  Voxel at(const Eigen::Vector3i& voxel) {
+  PackedVoxel at(const Eigen::Vector3i& voxel) {
     const Eigen::Vector3i place = block_of(voxel);
-    if (!has_block_ || place != place_) {
+    if (place.x() != place_.x() || place.y() != place_.y() || place.z() != place_.z()) {
       place_ = place;
       block_ = map_.find_block(place);
-      has_block_ = true;
     }
     if (block_ == nullptr) return {};
-    return block_->voxels[static_cast<std::size_t>(position_in_block(voxel))];
+    return block_->voxels.packed(static_cast<std::size_t>(position_in_block(voxel)));
   }
 
  private:
   const VoxelMap& map_;
-  Eigen::Vector3i place_ = Eigen::Vector3i::Zero();
+  // At first one where no block can be.
+  Eigen::Vector3i place_ = Eigen::Vector3i::Constant(kMaxBlockCoordinate + 1);
   const VoxelBlock* block_ = nullptr;
-  bool has_block_ = false;
 };
 
-// A ray from voxel to voxel (Amanatides and Woo 1987), in voxels.
+// A ray from voxel to voxel (Amanatides and Woo 1987), in voxels. Where it crosses a face follows
+// from the face, not from the crossing before, so nothing adds up.
 class VoxelWalk {
  public:
   VoxelWalk(const Eigen::Vector3d& from, const Eigen::Vector3d& unit_direction)
-      : voxel_(from.array().floor().cast<int>()), from_(from), direction_(unit_direction) {
-    for (int axis = 0; axis < 3; ++axis) next_[axis] = next_face(axis);
+      : voxel_(from.array().floor().cast<int>()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double direction = unit_direction[axis];
+      step_[axis] = direction > 0.0 ? 1 : -1;
+      // Along an axis that it does not follow it crosses a face infinitely late.
+      inverse_[axis] = direction == 0.0 ? 0.0 : 1.0 / direction;
+      start_[axis] = direction == 0.0 ? std::numeric_limits<double>::infinity()
+                                      : ((direction > 0.0 ? 1.0 : 0.0) - from[axis]) / direction;
+      next_[axis] = next_face(axis);
+    }
   }
 
   const Eigen::Vector3i& voxel() const { return voxel_; }
   double entered_at() const { return entered_at_; }
   void step() {
-    int axis = 0;
-    entered_at_ = next_.minCoeff(&axis);
-    voxel_[axis] += direction_[axis] > 0.0 ? 1 : -1;
+    const int nearer_of_xy = next_[0] <= next_[1] ? 0 : 1;
+    const int axis = next_[nearer_of_xy] <= next_[2] ? nearer_of_xy : 2;
+    entered_at_ = next_[axis];
+    voxel_[axis] += step_[axis];
     next_[axis] = next_face(axis);
   }
 
  private:
-  double next_face(int axis) const {
-    if (direction_[axis] == 0.0) return std::numeric_limits<double>::infinity();
-    const int face = direction_[axis] > 0.0 ? voxel_[axis] + 1 : voxel_[axis];
-    return (face - from_[axis]) / direction_[axis];
-  }
+  double next_face(int axis) const { return voxel_[axis] * inverse_[axis] + start_[axis]; }
 
-  Eigen::Vector3i voxel_;
-  Eigen::Vector3d from_, direction_, next_;
+  Eigen::Vector3i voxel_, step_;
+  Eigen::Vector3d inverse_, start_, next_;
   double entered_at_ = 0.0;
 };
 
@@ -90,13 +95,9 @@ bool contains(const VoxelBounds& box, const Eigen::Vector3i& voxel) {
 MapQueries::MapQueries(const VoxelMap& map, const QueryParams& params)
     : map_(map), params_(params) {}
 
-VoxelState MapQueries::state_of(const Voxel& voxel) const {
-  if (!is_known(voxel) || voxel.observations < params_.min_observations) return VoxelState::unknown;
-  return voxel.state > params_.threshold ? VoxelState::occupied : VoxelState::free;
-}
-
 VoxelState MapQueries::state_at(const Eigen::Vector3d& p_world) const {
-  return state_of(map_.at(voxel_index_of(map_.voxel_size_m(), p_world)));
+  const Voxel voxel = map_.at(voxel_index_of(map_.voxel_size_m(), p_world));
+  return state_of(voxel);
 }
 
 std::vector<VoxelState> MapQueries::states_at(std::span<const Eigen::Vector3d> points_world) const {

@@ -43,7 +43,10 @@ class MapQueries {
  public:
   explicit MapQueries(const VoxelMap& map, const QueryParams& params = {});
 
-  VoxelState state_of(const Voxel& voxel) const;
+  VoxelState state_of(const Voxel& voxel) const { return state(voxel.state, voxel.observations); }
+  VoxelState state_of(const PackedVoxel& voxel) const {
+    return state(voxel.state, voxel.observations);
+  }
   VoxelState state_at(const Eigen::Vector3d& p_world) const;
   std::vector<VoxelState> states_at(std::span<const Eigen::Vector3d> points_world) const;
 
@@ -63,6 +66,10 @@ class MapQueries {
   bool ball_collides(const Eigen::Vector3d& center_world, double radius_m) const;
 
  private:
+  VoxelState state(float state, int observations) const {
+    if (observations == 0 || observations < params_.min_observations) return VoxelState::unknown;
+    return state > params_.threshold ? VoxelState::occupied : VoxelState::free;
+  }
   bool is_obstacle(VoxelState state) const;
   void search_nearest(const VoxelBlock& block, const Eigen::Vector3d& p_world, double range_m,
                       std::optional<Obstacle>& nearest) const;

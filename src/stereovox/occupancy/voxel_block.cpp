@@ -20,10 +20,7 @@ BlockVoxels& BlockVoxels::operator=(const BlockVoxels& other) {
 }
 
 void BlockVoxels::set(std::size_t position, const Voxel& voxel) {
-  const std::uint16_t time = number_of_time(voxel.last_seen_ms);
-  packed_[position] = {voxel.state, voxel.observations, time};
-  if (voxel.ignorance > 0 && ignorance_ == nullptr) ignorance_ = std::make_unique<Ignorance>();
-  if (ignorance_ != nullptr) (*ignorance_)[position] = voxel.ignorance;
+  set(position, voxel, number_of_time(voxel.last_seen_ms));
 }
 
 std::uint16_t BlockVoxels::number_of_time(std::uint32_t time_ms) {

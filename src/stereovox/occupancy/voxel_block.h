@@ -39,6 +39,12 @@ class BlockVoxels {
             ignorance_ == nullptr ? std::uint16_t{0} : (*ignorance_)[position]};
   }
   void set(std::size_t position, const Voxel& voxel);
+  // The same when the number of the voxel's time is known.
+  void set(std::size_t position, const Voxel& voxel, std::uint16_t time) {
+    packed_[position] = {voxel.state, voxel.observations, time};
+    if (voxel.ignorance > 0 && ignorance_ == nullptr) ignorance_ = std::make_unique<Ignorance>();
+    if (ignorance_ != nullptr) (*ignorance_)[position] = voxel.ignorance;
+  }
 
   // For loops over a block: the voxel without its ignorance, and the number of a time, which stays
   // good until the next one is asked for.

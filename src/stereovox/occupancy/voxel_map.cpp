@@ -14,11 +14,6 @@ namespace {
 
 constexpr double kMinVoxelSize_m = 0.001, kMaxVoxelSize_m = 10.0;
 
-bool is_within_reach(const Eigen::Vector3i& block) {
-  return (block.array() >= -kMaxBlockCoordinate).all() &&
-         (block.array() <= kMaxBlockCoordinate).all();
-}
-
 std::string place_text(const Eigen::Vector3i& tile) {
   return fmt::format("({}, {}, {})", tile.x(), tile.y(), tile.z());
 }
@@ -68,27 +63,6 @@ VoxelMap::VoxelMap(const VoxelMap& other)
 VoxelMap& VoxelMap::operator=(const VoxelMap& other) {
   if (this != &other) *this = VoxelMap(other);
   return *this;
-}
-
-// ---- finding
-
-VoxelTile* VoxelMap::find_tile(const Eigen::Vector3i& block_index) const {
-  if (!is_within_reach(block_index)) return nullptr;
-  const int number = index_.find(tile_of(block_index));
-  return number == BlockIndex::kNone ? nullptr : tiles_[static_cast<std::size_t>(number)].get();
-}
-
-const VoxelBlock* VoxelMap::find_block(const Eigen::Vector3i& block_index) const {
-  VoxelTile* const tile = find_tile(block_index);
-  if (tile == nullptr) return nullptr;
-  if (tile->is_out) bring_back(*tile);
-  return tile->blocks[position_in_tile(block_index)].get();
-}
-
-Voxel VoxelMap::at(const Eigen::Vector3i& index) const {
-  const VoxelBlock* const block = find_block(block_of(index));
-  return block == nullptr ? Voxel{}
-                          : block->voxels[static_cast<std::size_t>(position_in_block(index))];
 }
 
 // ---- changing

@@ -50,13 +50,22 @@ class VoxelMap {
   double floor_z_m() const { return floor_z_m_; }
 
   // The voxel; an unknown one when its block does not exist.
-  Voxel at(const Eigen::Vector3i& index) const;
+  Voxel at(const Eigen::Vector3i& index) const {
+    const VoxelBlock* const block = find_block(block_of(index));
+    return block == nullptr ? Voxel{}
+                            : block->voxels[static_cast<std::size_t>(position_in_block(index))];
+  }
   // For single voxels; a loop goes through the block.
   void set(const Eigen::Vector3i& index, const Voxel& voxel);
 
   // The block counts as changed. Ask again before a later change.
   VoxelBlock& find_or_create_block(const Eigen::Vector3i& block_index);
-  const VoxelBlock* find_block(const Eigen::Vector3i& block_index) const;
+  const VoxelBlock* find_block(const Eigen::Vector3i& block_index) const {
+    VoxelTile* const tile = find_tile(block_index);
+    if (tile == nullptr) return nullptr;
+    if (tile->is_out) bring_back(*tile);
+    return tile->blocks[position_in_tile(block_index)].get();
+  }
   void erase_block(const Eigen::Vector3i& block_index);
 
   // Tile by tile, in the canonical order of the tiles and of the blocks of each; tiles that are out
@@ -106,7 +115,16 @@ class VoxelMap {
   std::map<std::string, std::string> attachments;
 
  private:
-  VoxelTile* find_tile(const Eigen::Vector3i& block_index) const;
+  VoxelTile* find_tile(const Eigen::Vector3i& block_index) const {
+    if (!is_within_reach(block_index)) return nullptr;
+    const int number = index_.find(tile_of(block_index));
+    return number == BlockIndex::kNone ? nullptr : tiles_[static_cast<std::size_t>(number)].get();
+  }
+  static bool is_within_reach(const Eigen::Vector3i& block) {
+    constexpr auto kReach = static_cast<unsigned>(kMaxBlockCoordinate);
+    const auto is_near = [](int c) { return static_cast<unsigned>(c) + kReach <= 2 * kReach; };
+    return is_near(block.x()) && is_near(block.y()) && is_near(block.z());
+  }
   VoxelTile& find_or_create_tile(const Eigen::Vector3i& block_index);
   std::vector<VoxelTile*> sorted_tiles() const;
   std::vector<VoxelTile*> tiles_in(const VoxelBounds& box) const;
