@@ -1,4 +1,4 @@
-// A run with a limit to its memory, and damaged maps, as a user meets them.
+// A run with a limit to its memory, and damaged and merged maps, as a user meets them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -74,6 +74,38 @@ TEST(MemoryLimit, AKilledRunLeavesNoFiles) {
     for (const auto& entry : fs::directory_iterator(out))
       ADD_FAILURE() << "left behind: " << entry.path();
   }
+}
+
+TEST(Merge, AMapWithItselfKnowsTheSamePlaces) {
+  const fs::path data = office_extract("data", 3), out = empty_folder("out");
+  ASSERT_EQ(run_program("run " + quoted(data) + " -q -o " + quoted(out)).exit_code, 0);
+  const std::string map = quoted(out / "map.svx");
+  const ProgramResult merged =
+      run_program("merge " + map + " " + map + " -o " + quoted(out / "both.svx"));
+  ASSERT_EQ(merged.exit_code, 0) << merged.output;
+  const auto voxels = [](const std::string& text) {
+    return text.substr(0, text.find(" voxels")).substr(text.rfind(' ', text.find(" voxels") - 1));
+  };
+  EXPECT_EQ(voxels(merged.output), voxels(run_program("check " + map).output));
+  const ProgramResult moved =
+      run_program("merge " + map + " " + map + " --at 100,0,0,90 -o " + quoted(out / "moved.svx"));
+  EXPECT_EQ(moved.exit_code, 0) << moved.output;
+  EXPECT_NE(voxels(moved.output), voxels(merged.output));
+}
+
+TEST(Merge, MapsOfDifferentVoxelSizesAreRefused) {
+  const fs::path data = office_extract("data", 3), out = empty_folder("out");
+  for (const char* size : {"0.1", "0.2"})
+    ASSERT_EQ(run_program("run " + quoted(data) + " -q --set occupancy.voxel_size_m=" + size +
+                          " -o " + quoted(out / size))
+                  .exit_code,
+              0);
+  const ProgramResult result =
+      run_program("merge " + quoted(out / "0.1" / "map.svx") + " " +
+                  quoted(out / "0.2" / "map.svx") + " -o " + quoted(out / "both.svx"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.output, HasSubstr("voxels of 0.1 m and of 0.2 m cannot be merged"));
+  EXPECT_FALSE(fs::exists(out / "both.svx"));
 }
 
 TEST(Salvage, WritesTheIntactTilesOfADamagedMap) {

@@ -12,7 +12,7 @@ namespace {
 
 // In the order in which data passes through them.
 constexpr void (*kCommands[])(CLI::App&, Action&) = {
-    add_run,   add_disparity, add_odometry, add_navmap,     add_export,
+    add_run,   add_disparity, add_odometry, add_navmap,     add_export, add_merge,
     add_score, add_check,     add_simulate, add_experiment, add_info,
 };
 
