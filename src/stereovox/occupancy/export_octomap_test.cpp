@@ -42,6 +42,18 @@ TEST(ExportOctomap, OneOccupiedVoxelAtTheOriginHasTheKnownBytes) {
   EXPECT_EQ(data_of(file), expected);
 }
 
+TEST(ExportOctomap, ChildrenGoByXThenYThenZ) {
+  VoxelMap along_x(0.1), along_z(0.1);
+  set(along_x, {1, 0, 0}, 0.9F);
+  set(along_z, {0, 0, 1}, 0.9F);
+  const auto last_node = [](const VoxelMap& map) {
+    const std::vector<int> data = data_of(exported(map, OctomapForm::binary));
+    return std::vector<int>(data.end() - 2, data.end());
+  };
+  EXPECT_EQ(last_node(along_x), (std::vector<int>{0x08, 0x00}));  // child 1 is occupied
+  EXPECT_EQ(last_node(along_z), (std::vector<int>{0x00, 0x02}));  // child 4 is
+}
+
 TEST(ExportOctomap, EightEqualVoxelsAreOneLeaf) {
   VoxelMap map(0.1);
   for (int i = 0; i < 8; ++i) set(map, {i & 1, i >> 1 & 1, i >> 2}, 0.9F);
