@@ -47,7 +47,7 @@ TEST(CommandLine, UnknownOptionsAndCommandsNameTheNearestKnownOne) {
 TEST(CommandLine, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(run_program("--version").exit_code, 0);
   for (const char* command : {"run", "disparity", "odometry", "navmap", "score", "score trajectory",
-                              "score disparity", "check", "info"}) {
+                              "score disparity", "check", "info", "export", "merge"}) {
     const ProgramResult help = run_program(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0) << command;
     EXPECT_THAT(help.output, HasSubstr("Usage")) << command;

@@ -12,8 +12,10 @@ namespace stereovox {
 
 namespace fs = std::filesystem;
 
-ProgramResult run_program(const std::string& arguments) {
-  const std::string command = std::string("'") + STEREOVOX_PROGRAM + "' " + arguments + " 2>&1";
+ProgramResult run_program(const std::string& arguments) { return run_under(":", arguments); }
+
+ProgramResult run_under(const std::string& setup, const std::string& arguments) {
+  const std::string command = setup + "; '" + STEREOVOX_PROGRAM + "' " + arguments + " 2>&1";
   ProgramResult result;
   FILE* const pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return result;

@@ -14,6 +14,9 @@ struct ProgramResult {
 // Runs `stereovox <arguments>` through the shell; single-quote what needs it.
 ProgramResult run_program(const std::string& arguments);
 
+// The same after a command of the shell that sets limits.
+ProgramResult run_under(const std::string& setup, const std::string& arguments);
+
 // A new empty folder of this name.
 std::filesystem::path empty_folder(const std::string& name);
 

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr int kSampledPairs = 10;
 
 struct CheckOptions {
-  std::string what, calibration;
+  std::string what, calibration, salvage;
 };
 
 void print_rig(const StereoRig& rig) {
@@ -98,6 +98,18 @@ ExitCode check_voxel_map(const fs::path& path) {
   return ExitCode::ok;
 }
 
+// Writes what is intact of a damaged map to a new file.
+ExitCode salvage(const fs::path& path, const fs::path& output) {
+  require_folder_of(output);
+  const SalvagedMap salvaged = salvage_voxel_map(path);
+  for (const std::string& loss : salvaged.losses) warn(path.string() + ": " + loss);
+  write_voxel_map(output, salvaged.map);
+  std::cout << fmt::format("{}: {} voxels kept, {}\n", output.string(),
+                           salvaged.map.known_voxel_count(),
+                           salvaged.losses.empty() ? "nothing lost" : "see the warnings");
+  return ExitCode::ok;
+}
+
 ExitCode check_navigation_map(const fs::path& path) {
   const LoadedMap loaded = read_map_server(path);
   const auto count = [&](CellLabel label) { return std::ranges::count(loaded.grid.labels, label); };
@@ -118,6 +130,7 @@ bool is_navigation_map(const fs::path& path) {
 
 ExitCode run(const CheckOptions& options) {
   const fs::path path = options.what;
+  if (!options.salvage.empty()) return salvage(path, options.salvage);
   if (path.extension() == ".svx") return check_voxel_map(path);
   if (fs::is_directory(path)) {
     std::optional<fs::path> calibration;
@@ -139,6 +152,10 @@ void add_check(CLI::App& program, Action& action) {
       ->required();
   command->add_option("--calib", options->calibration, "calibration to use with the data set")
       ->type_name("FILE");
+  command
+      ->add_option("--salvage", options->salvage,
+                   "write what is intact of a damaged map.svx to this file")
+      ->type_name("FILE.svx");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -23,6 +23,7 @@ struct RunOptions {
   std::string output, poses, preset;
   std::optional<double> camera_height_m, camera_pitch_deg;
   std::vector<double> start_pose;
+  std::optional<std::uint64_t> memory_limit_bytes;
   bool overwrite = false, quiet = false, verbose = false, json_progress = false;
 };
 
@@ -37,6 +38,11 @@ Settings shorthands(const RunOptions& options) {
   };
   set("world.camera_height_m", options.camera_height_m);
   set("world.camera_pitch_deg", options.camera_pitch_deg);
+  constexpr double kBytesPerMb = 1e6;
+  if (options.memory_limit_bytes)
+    settings.emplace_back(
+        "memory_limit_mb",
+        fmt::format("{}", static_cast<double>(*options.memory_limit_bytes) / kBytesPerMb));
   constexpr const char* kStart[] = {"world.start_x_m", "world.start_y_m", "world.start_yaw_deg"};
   for (std::size_t i = 0; i < options.start_pose.size(); ++i)
     settings.emplace_back(kStart[i], fmt::format("{}", options.start_pose[i]));
@@ -140,12 +146,15 @@ ExitCode run(const RunOptions& options) {
   cv::setNumThreads(std::max(1, config.thread_count() - 1));
   catch_interrupt();
   RunDisplay display(display_mode(options));
-  BuildResult result = build_maps(*sequence, config, poses, sink_for(display));
+  BuildResult result = build_maps(*sequence, config, poses, sink_for(display), options.output);
   display.end();
   show_remarks(*sequence, remarks_before);
   for (const SkippedPair& pair : sequence->skipped())
     warn(fmt::format("{}: skipped: {}", pair.name, pair.reason));
   write_outputs(options.output, *sequence, config, result);
+  if (!result.failure.empty())
+    throw ResourceError(result.failure + "; what was mapped before is written to " +
+                        options.output);
   if (talks) print_summary(options, *sequence, config, result);
   return exit_code(config, result);
 }
@@ -174,6 +183,11 @@ void add_run(CLI::App& program, Action& action) {
       ->type_name("X,Y,YAW")
       ->delimiter(',')
       ->expected(3);
+  command
+      ->add_option("--memory-limit", options->memory_limit_bytes,
+                   "for voxels; what is out of view waits in a nameless file in the output folder")
+      ->type_name("SIZE[M|G]")
+      ->transform(CLI::AsSizeValue(true));
   command->add_flag("--overwrite", options->overwrite, "replace the results of an earlier run");
   command->add_flag("-q,--quiet", options->quiet, "print warnings and errors only");
   command->add_flag("-v,--verbose", options->verbose, "print a line for each frame");

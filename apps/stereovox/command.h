@@ -31,6 +31,8 @@ void add_run(CLI::App& program, Action& action);
 void add_disparity(CLI::App& program, Action& action);
 void add_odometry(CLI::App& program, Action& action);
 void add_navmap(CLI::App& program, Action& action);
+void add_export(CLI::App& program, Action& action);
+void add_merge(CLI::App& program, Action& action);
 void add_score(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_simulate(CLI::App& program, Action& action);

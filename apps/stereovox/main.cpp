@@ -12,8 +12,8 @@ namespace {
 
 // In the order in which data passes through them.
 constexpr void (*kCommands[])(CLI::App&, Action&) = {
-    add_run,   add_disparity, add_odometry,   add_navmap, add_score,
-    add_check, add_simulate,  add_experiment, add_info,
+    add_run,   add_disparity, add_odometry, add_navmap,     add_export, add_merge,
+    add_score, add_check,     add_simulate, add_experiment, add_info,
 };
 
 constexpr const char* kFooter =

@@ -32,7 +32,7 @@ class Knowledge {
   void for_each(const Visit& visit) const {
     for (const VoxelBlock* block : map_.sorted_blocks())
       for (int i = 0; i < kVoxelsPerBlock; ++i) {
-        const Voxel& voxel = block->voxels[static_cast<std::size_t>(i)];
+        const Voxel voxel = block->voxels[static_cast<std::size_t>(i)];
         if (knows(voxel)) visit(voxel_at(block->index, i), voxel);
       }
   }

@@ -37,10 +37,8 @@ VoxelMap ideal_voxel_map(const World& world, double voxel_size_m) {
     for (int y = 0; y < voxels.size.y(); ++y)
       for (int x = 0; x < voxels.size.x(); ++x) {
         const Eigen::Vector3i index = voxels.min + Eigen::Vector3i(x, y, z);
-        VoxelBlock& block = map.find_or_create_block(block_of(index));
         const bool is_occupied = voxels.is_occupied[voxels.position_of(index)] != 0;
-        block.voxels[static_cast<std::size_t>(position_in_block(index))] = {
-            .state = is_occupied ? 1.0F : 0.0F, .last_seen_ms = 0, .observations = 1};
+        map.set(index, {.state = is_occupied ? 1.0F : 0.0F, .last_seen_ms = 0, .observations = 1});
       }
   map.epoch_ns = 0;
   return map;

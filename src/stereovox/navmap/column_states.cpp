@@ -14,8 +14,8 @@ int to_layer(double z) {
   return static_cast<int>(std::clamp(z, -1.0 * kMaxLayer, 1.0 * kMaxLayer));
 }
 
-void add_voxel(const Voxel& voxel, ColumnState& column) {
-  column.max_state = column.is_known ? std::max(column.max_state, voxel.state) : voxel.state;
+void add_voxel(float state, ColumnState& column) {
+  column.max_state = column.is_known ? std::max(column.max_state, state) : state;
   column.is_known = true;
 }
 
@@ -36,10 +36,12 @@ void add_block(const VoxelBlock& block, const Layers& layers, int min_observatio
   const int base_z = block.index.z() * kBlockSide;
   for (int z = 0; z < kBlockSide; ++z) {
     if (!layers.contains(base_z + z)) continue;
-    const Voxel* const layer = block.voxels.data() + z * kCellsPerTile;
-    for (int i = 0; i < kCellsPerTile; ++i)
-      if (is_known(layer[i]) && layer[i].observations >= min_observations)
-        add_voxel(layer[i], tile[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < kCellsPerTile; ++i) {
+      const PackedVoxel& voxel =
+          block.voxels.packed(static_cast<std::size_t>(z * kCellsPerTile + i));
+      if (voxel.observations > 0 && voxel.observations >= min_observations)
+        add_voxel(voxel.state, tile[static_cast<std::size_t>(i)]);
+    }
   }
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <optional>
 
 #include "stereovox/navmap/cell_set.h"
 #include "stereovox/navmap/navmap_params.h"
@@ -32,18 +34,25 @@ Layers layers_of(const VoxelMap& map, const NavmapParams& params);
 void add_block(const VoxelBlock& block, const Layers& layers, int min_observations,
                ColumnTile& tile);
 
-// Calls visit(tile index, ColumnTile) for every column of blocks of the map, in canonical order.
+// Calls visit(tile index, ColumnTile) for every column of blocks of the map, in canonical order but
+// for columns of the same map tile in x, which come by its y first.
 template <class Visit>
 void for_each_column_tile(const VoxelMap& map, const NavmapParams& params, const Visit& visit) {
   const Layers layers = layers_of(map, params);
-  const std::vector<const VoxelBlock*> blocks = map.sorted_blocks();
-  for (std::size_t i = 0; i < blocks.size();) {
-    const TileIndex index(blocks[i]->index.x(), blocks[i]->index.y());
-    ColumnTile tile;
-    for (; i < blocks.size() && index == TileIndex(blocks[i]->index.x(), blocks[i]->index.y()); ++i)
-      add_block(*blocks[i], layers, params.min_observations, tile);
-    visit(index, tile);
-  }
+  std::map<TileIndex, ColumnTile> columns;  // of the map tiles above each other
+  std::optional<Eigen::Vector2i> place;
+  const auto finish = [&] {
+    for (const auto& [index, column] : columns) visit(index, column);
+    columns.clear();
+  };
+  map.for_each_tile([&](const Eigen::Vector3i& tile, std::span<const VoxelBlock* const> blocks) {
+    if (place && *place != tile.head<2>()) finish();
+    place = tile.head<2>();
+    for (const VoxelBlock* const block : blocks)
+      add_block(*block, layers, params.min_observations,
+                columns[{block->index.x(), block->index.y()}]);
+  });
+  finish();
 }
 
 // Finds single tiles quickly; refers to the map.

@@ -56,16 +56,17 @@ std::vector<Splat> splats_of(const VoxelMap& map, const VoxelView& view) {
   const Eigen::Matrix3d axes = viewing_axes(view);
   const cv::Mat3b colours = height_colours();
   std::vector<Splat> splats;
-  for (const VoxelBlock* block : map.sorted_blocks())
+  map.for_each_block([&](const VoxelBlock& block) {
     for (int i = 0; i < kVoxelsPerBlock; ++i) {
-      const Voxel& voxel = block->voxels[static_cast<std::size_t>(i)];
+      const Voxel voxel = block.voxels[static_cast<std::size_t>(i)];
       if (voxel.observations < view.min_observations || voxel.state <= view.threshold) continue;
-      const Eigen::Vector3i index = voxel_at(block->index, i);
+      const Eigen::Vector3i index = voxel_at(block.index, i);
       const Eigen::Vector3d center = voxel_center_of(map.voxel_size_m(), index);
       const Eigen::Vector3d seen = axes * center;
       splats.push_back(
           {seen.x(), seen.y(), seen.z(), colour_of(index, center.z() - map.floor_z_m(), colours)});
     }
+  });
   return splats;
 }
 

@@ -19,9 +19,7 @@ using Drawing = std::vector<std::string>;
 
 inline void set_voxel(VoxelMap& map, const Eigen::Vector3i& voxel, float state,
                       std::uint16_t observations = kOftenObserved) {
-  auto& voxels = map.find_or_create_block(block_of(voxel)).voxels;
-  voxels[static_cast<std::size_t>(position_in_block(voxel))] = {.state = state,
-                                                                .observations = observations};
+  map.set(voxel, {.state = state, .observations = observations});
 }
 
 // Calls visit(cell, character) for each character.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
@@ -41,13 +42,24 @@ struct LatticeOrder {
   }
 };
 
+// 21 bits for each coordinate.
+inline std::uint64_t block_key(const Eigen::Vector3i& block) {
+  constexpr int kBits = 21, kOffset = kMaxBlockCoordinate + 1;
+  assert(block.cwiseAbs().maxCoeff() <= kMaxBlockCoordinate);
+  return static_cast<std::uint64_t>(block.x() + kOffset) << 2 * kBits |
+         static_cast<std::uint64_t>(block.y() + kOffset) << kBits |
+         static_cast<std::uint64_t>(block.z() + kOffset);
+}
+
 // Numbers blocks 0, 1, 2, ... in the order in which they are first seen. Open addressing, at most
 // half full. Coordinates must lie within +-kMaxBlockCoordinate.
 class BlockIndex {
  public:
   static constexpr int kNone = -1;
 
-  int find(const Eigen::Vector3i& block) const;
+  int find(const Eigen::Vector3i& block) const {
+    return slots_.empty() ? kNone : slots_[slot_of(block_key(block))].number;
+  }
   int find_or_insert(const Eigen::Vector3i& block);
   int size() const { return size_; }
   std::size_t memory_bytes() const { return slots_.capacity() * sizeof(Slot); }
@@ -58,7 +70,17 @@ class BlockIndex {
     int number = kNone;
   };
 
-  std::size_t slot_of(std::uint64_t key) const;
+  // Multiplying by 2^64 / golden ratio spreads neighbouring keys; the high bits are the mixed ones.
+  static std::size_t hash_of(std::uint64_t key) {
+    constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15ULL;
+    return static_cast<std::size_t>((key * kGolden) >> 32);
+  }
+  std::size_t slot_of(std::uint64_t key) const {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t slot = hash_of(key) & mask;
+    while (slots_[slot].number != kNone && slots_[slot].key != key) slot = (slot + 1) & mask;
+    return slot;
+  }
   void grow();
 
   std::vector<Slot> slots_;

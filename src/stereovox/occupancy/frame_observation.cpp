@@ -98,9 +98,8 @@ void clear_frustum(const FrameView& frame, MaskedBlocks& free) {
 }
 
 void clear_known(const VoxelMap& map, MaskedBlocks& free) {
-  for (const VoxelBlock* const block : map.sorted_blocks())
-    for (int i = 0; i < kVoxelsPerBlock; ++i)
-      if (is_known(block->voxels[static_cast<std::size_t>(i)])) free.set(voxel_at(block->index, i));
+  map.for_each_block(
+      [&](const VoxelBlock& block) { free.insert(block.index, block.voxels.known()); });
 }
 
 // The bands of rows that threads share.

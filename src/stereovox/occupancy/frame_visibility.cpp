@@ -84,16 +84,19 @@ class VisibilityField {
       : rule_(rule),
         frame_(frame),
         observation_(observation),
-        map_(map),
         camera_(voxel_index_of(frame.params.voxel_size_m, frame.T_world_camera.translation)),
-        values_(observation.blocks.size()) {}
+        values_(observation.blocks.size()) {
+    // Here, not on threads: asking a map for a block may change where it is.
+    for (int number = 0; number < static_cast<int>(observation.blocks.size()); ++number)
+      surroundings_.emplace_back(observation, map, number);
+  }
 
   // The blocks nearer to the camera must be filled before. Every voxel comes after those that face
   // the camera more.
   void fill(int number) {
     const auto at = static_cast<std::size_t>(number);
     const BlockObservation& block = observation_.blocks[at];
-    const BlockSurroundings near(observation_, map_, number);
+    const BlockSurroundings& near = surroundings_[at];
     values_[at].assign(kVoxelsPerBlock, 0.0F);
     const auto xs = outward(block.index.x(), camera_.x());
     const auto ys = outward(block.index.y(), camera_.y());
@@ -146,8 +149,8 @@ class VisibilityField {
   const VisibilityRule& rule_;
   const FrameView& frame_;
   const FrameObservation& observation_;
-  const VoxelMap& map_;
   Eigen::Vector3i camera_;
+  std::vector<BlockSurroundings> surroundings_;
   std::vector<std::vector<float>> values_;
 };
 

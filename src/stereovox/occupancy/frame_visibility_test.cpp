@@ -8,8 +8,7 @@ namespace stereovox {
 namespace {
 
 void set_state(VoxelMap& map, const Eigen::Vector3i& index, float state) {
-  map.find_or_create_block(block_of(index)).voxels[std::size_t(position_in_block(index))] = {
-      .state = state, .observations = 5};
+  map.set(index, {.state = state, .observations = 5});
 }
 
 OccupancyParams visibility_params() {

@@ -125,6 +125,26 @@ void for_each_block(const FrameChange& change, Update update) {
   });
 }
 
+// Changes voxels of one block by one frame. A voxel's time becomes the frame's or stays.
+class BlockChange {
+ public:
+  BlockChange(VoxelBlock& block, std::uint32_t stamp_ms)
+      : voxels_(block.voxels), stamp_ms_(stamp_ms), time_(voxels_.number_of_time(stamp_ms)) {}
+
+  template <class Change>
+  void apply(int position, Change change) {
+    const auto at = static_cast<std::size_t>(position);
+    Voxel voxel = voxels_[at];
+    change(voxel);
+    voxels_.set(at, voxel, voxel.last_seen_ms == stamp_ms_ ? time_ : voxels_.packed(at).time);
+  }
+
+ private:
+  BlockVoxels& voxels_;
+  std::uint32_t stamp_ms_;
+  std::uint16_t time_;
+};
+
 // Step 5 for one block, in two passes over the frame: all O_t were there before any H is asked for.
 template <WeighingRule Rule>
 void update_block(const Rule& rule, const FrameChange& change, std::span<const int> neighbours,
@@ -133,15 +153,17 @@ void update_block(const Rule& rule, const FrameChange& change, std::span<const i
   const std::uint32_t stamp_ms = change.frame.stamp_ms;
   const PaddedObservations padded(change.observation, seen);
   AgeFactor<Rule> age_factor(rule);
+  BlockChange block_change(block, stamp_ms);
   for_each_in(seen.observed, [&](int i) {
-    Voxel& voxel = block.voxels[static_cast<std::size_t>(i)];
     const double H =
         padded.is_uniform() ? 0.0 : padded.heterogeneity_at(i, params.homogeneity, neighbours);
-    const double k = rule.credibility({.prior_observations = voxel.observations,
-                                       .homogeneity = homogeneity(params.homogeneity, H),
-                                       .age_factor = age_factor.of(voxel, stamp_ms),
-                                       .frames_before = frames_before});
-    update_voxel(seen.value_at(i), k, params.initial_state, stamp_ms, voxel);
+    block_change.apply(i, [&](Voxel& voxel) {
+      const double k = rule.credibility({.prior_observations = voxel.observations,
+                                         .homogeneity = homogeneity(params.homogeneity, H),
+                                         .age_factor = age_factor.of(voxel, stamp_ms),
+                                         .frames_before = frames_before});
+      update_voxel(seen.value_at(i), k, params.initial_state, stamp_ms, voxel);
+    });
   });
 }
 
@@ -155,10 +177,13 @@ void update_map(const Rule& rule, const FrameChange& change, const VoxelMap& map
 
 template <AddingRule Rule>
 void update_map(const Rule& rule, const FrameChange& change, const VoxelMap&) {
+  const std::uint32_t stamp_ms = change.frame.stamp_ms;
   for_each_block(change, [&](std::size_t, const BlockObservation& seen, VoxelBlock& block) {
+    BlockChange block_change(block, stamp_ms);
     for_each_in(seen.observed, [&](int i) {
-      Voxel& voxel = block.voxels[static_cast<std::size_t>(i)];
-      store(rule.after(belief_of(voxel), seen.value_at(i)), change.frame.stamp_ms, voxel);
+      block_change.apply(i, [&](Voxel& voxel) {
+        store(rule.after(belief_of(voxel), seen.value_at(i)), stamp_ms, voxel);
+      });
     });
   });
 }
@@ -166,11 +191,13 @@ void update_map(const Rule& rule, const FrameChange& change, const VoxelMap&) {
 void update_map(const VisibilityRule& rule, const FrameChange& change, const VoxelMap& map) {
   const auto visibility =
       frame_visibility(rule, change.frame, change.observation, map, change.threads);
+  const std::uint32_t stamp_ms = change.frame.stamp_ms;
   for_each_block(change, [&](std::size_t number, const BlockObservation& seen, VoxelBlock& block) {
+    BlockChange block_change(block, stamp_ms);
     for_each_in(seen.observed, [&](int i) {
-      const auto at = static_cast<std::size_t>(i);
-      update_voxel(rule, seen.value_at(i), static_cast<double>(visibility[number][at]),
-                   change.frame.stamp_ms, block.voxels[at]);
+      const auto visible = static_cast<double>(visibility[number][static_cast<std::size_t>(i)]);
+      block_change.apply(
+          i, [&](Voxel& voxel) { update_voxel(rule, seen.value_at(i), visible, stamp_ms, voxel); });
     });
   });
 }

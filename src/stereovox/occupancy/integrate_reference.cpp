@@ -98,10 +98,11 @@ VoxelSet observed_besides_hits(const FrameView& frame, const VoxelMap& map) {
   if (frame.params.observed_set == ObservedSet::projected) return voxels_seen_free(frame);
   VoxelSet observed = voxels_in_frustum(frame);
   if (frame.params.observed_set == ObservedSet::frustum) return observed;
-  for (const VoxelBlock* block : map.sorted_blocks())
+  map.for_each_block([&](const VoxelBlock& block) {
     for (int i = 0; i < kVoxelsPerBlock; ++i)
-      if (const Eigen::Vector3i voxel = voxel_at(block->index, i); is_known(map.at(voxel)))
+      if (const Eigen::Vector3i voxel = voxel_at(block.index, i); is_known(map.at(voxel)))
         observed.insert(voxel);
+  });
   return observed;
 }
 
@@ -133,23 +134,19 @@ std::vector<Eigen::Vector3i> join_points(const FrameView& frame,
   return hits;
 }
 
-Voxel& voxel_of(VoxelMap& map, const Eigen::Vector3i& index) {
-  return map.find_or_create_block(block_of(index))
-      .voxels[static_cast<std::size_t>(position_in_block(index))];
-}
-
 template <WeighingRule Rule>
 void update_map(const Rule& rule, const FrameView& frame, const PerVoxel<float>& observations,
                 VoxelMap& map) {
   for (const auto& [index, observation] : observations) {
     const double H = heterogeneity_of(index, observations, frame.params.homogeneity);
-    Voxel& voxel = voxel_of(map, index);
+    Voxel voxel = map.at(index);
     const double age_factor = is_known(voxel) ? rule.age_factor(age_s(voxel, frame.stamp_ms)) : 1.0;
     const double k = rule.credibility({.prior_observations = voxel.observations,
                                        .homogeneity = homogeneity(frame.params.homogeneity, H),
                                        .age_factor = age_factor,
                                        .frames_before = map.frames_integrated});
     update_voxel(observation, k, frame.params.initial_state, frame.stamp_ms, voxel);
+    map.set(index, voxel);
   }
 }
 
@@ -157,8 +154,9 @@ template <AddingRule Rule>
 void update_map(const Rule& rule, const FrameView& frame, const PerVoxel<float>& observations,
                 VoxelMap& map) {
   for (const auto& [index, observation] : observations) {
-    Voxel& voxel = voxel_of(map, index);
+    Voxel voxel = map.at(index);
     store(rule.after(belief_of(voxel), observation), frame.stamp_ms, voxel);
+    map.set(index, voxel);
   }
 }
 
@@ -197,9 +195,12 @@ PerVoxel<float> visibilities(const VisibilityRule& rule, const FrameView& frame,
 void update_map(const VisibilityRule& rule, const FrameView& frame,
                 const PerVoxel<float>& observations, VoxelMap& map) {
   const PerVoxel<float> visibility = visibilities(rule, frame, observations, map);
-  for (const auto& [index, observation] : observations)
+  for (const auto& [index, observation] : observations) {
+    Voxel voxel = map.at(index);
     update_voxel(rule, observation, static_cast<double>(visibility.at(index)), frame.stamp_ms,
-                 voxel_of(map, index));
+                 voxel);
+    map.set(index, voxel);
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "stereovox/core/grid_geometry.h"
+#include "stereovox/occupancy/homogeneity.h"
 
 namespace stereovox {
 namespace {
@@ -15,50 +16,55 @@ class NearbyVoxels {
  public:
   explicit NearbyVoxels(const VoxelMap& map) : map_(map) {}
 
-  Voxel at(const Eigen::Vector3i& voxel) {
+  PackedVoxel at(const Eigen::Vector3i& voxel) {
     const Eigen::Vector3i place = block_of(voxel);
-    if (!has_block_ || place != place_) {
+    if (place.x() != place_.x() || place.y() != place_.y() || place.z() != place_.z()) {
       place_ = place;
       block_ = map_.find_block(place);
-      has_block_ = true;
     }
     if (block_ == nullptr) return {};
-    return block_->voxels[static_cast<std::size_t>(position_in_block(voxel))];
+    return block_->voxels.packed(static_cast<std::size_t>(position_in_block(voxel)));
   }
 
  private:
   const VoxelMap& map_;
-  Eigen::Vector3i place_ = Eigen::Vector3i::Zero();
+  // At first one where no block can be.
+  Eigen::Vector3i place_ = Eigen::Vector3i::Constant(kMaxBlockCoordinate + 1);
   const VoxelBlock* block_ = nullptr;
-  bool has_block_ = false;
 };
 
-// A ray from voxel to voxel (Amanatides and Woo 1987), in voxels.
+// A ray from voxel to voxel (Amanatides and Woo 1987), in voxels. Where it crosses a face follows
+// from the face, not from the crossing before, so nothing adds up.
 class VoxelWalk {
  public:
   VoxelWalk(const Eigen::Vector3d& from, const Eigen::Vector3d& unit_direction)
-      : voxel_(from.array().floor().cast<int>()), from_(from), direction_(unit_direction) {
-    for (int axis = 0; axis < 3; ++axis) next_[axis] = next_face(axis);
+      : voxel_(from.array().floor().cast<int>()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double direction = unit_direction[axis];
+      step_[axis] = direction > 0.0 ? 1 : -1;
+      // Along an axis that it does not follow it crosses a face infinitely late.
+      inverse_[axis] = direction == 0.0 ? 0.0 : 1.0 / direction;
+      start_[axis] = direction == 0.0 ? std::numeric_limits<double>::infinity()
+                                      : ((direction > 0.0 ? 1.0 : 0.0) - from[axis]) / direction;
+      next_[axis] = next_face(axis);
+    }
   }
 
   const Eigen::Vector3i& voxel() const { return voxel_; }
   double entered_at() const { return entered_at_; }
   void step() {
-    int axis = 0;
-    entered_at_ = next_.minCoeff(&axis);
-    voxel_[axis] += direction_[axis] > 0.0 ? 1 : -1;
+    const int nearer_of_xy = next_[0] <= next_[1] ? 0 : 1;
+    const int axis = next_[nearer_of_xy] <= next_[2] ? nearer_of_xy : 2;
+    entered_at_ = next_[axis];
+    voxel_[axis] += step_[axis];
     next_[axis] = next_face(axis);
   }
 
  private:
-  double next_face(int axis) const {
-    if (direction_[axis] == 0.0) return std::numeric_limits<double>::infinity();
-    const int face = direction_[axis] > 0.0 ? voxel_[axis] + 1 : voxel_[axis];
-    return (face - from_[axis]) / direction_[axis];
-  }
+  double next_face(int axis) const { return voxel_[axis] * inverse_[axis] + start_[axis]; }
 
-  Eigen::Vector3i voxel_;
-  Eigen::Vector3d from_, direction_, next_;
+  Eigen::Vector3i voxel_, step_;
+  Eigen::Vector3d inverse_, start_, next_;
   double entered_at_ = 0.0;
 };
 
@@ -68,18 +74,30 @@ double distance2(const Eigen::Vector3d& p, const Eigen::Vector3d& low,
   return (p - p.cwiseMax(low).cwiseMin(high)).squaredNorm();
 }
 
+// Calls visit(block) for the blocks `shell` steps from the one in the middle, counted along the
+// axis on which they are farthest.
+template <class Visit>
+void for_each_in_shell(const Eigen::Vector3i& center, int shell, Visit visit) {
+  for (int x = -shell; x <= shell; ++x)
+    for (int y = -shell; y <= shell; ++y) {
+      const bool is_wall = std::abs(x) == shell || std::abs(y) == shell;
+      const int step = is_wall || shell == 0 ? 1 : 2 * shell;
+      for (int z = -shell; z <= shell; z += step) visit(center + Eigen::Vector3i(x, y, z));
+    }
+}
+
+bool contains(const VoxelBounds& box, const Eigen::Vector3i& voxel) {
+  return (voxel.array() >= box.min.array()).all() && (voxel.array() <= box.max.array()).all();
+}
+
 }  // namespace
 
 MapQueries::MapQueries(const VoxelMap& map, const QueryParams& params)
     : map_(map), params_(params) {}
 
-VoxelState MapQueries::state_of(const Voxel& voxel) const {
-  if (!is_known(voxel) || voxel.observations < params_.min_observations) return VoxelState::unknown;
-  return voxel.state > params_.threshold ? VoxelState::occupied : VoxelState::free;
-}
-
 VoxelState MapQueries::state_at(const Eigen::Vector3d& p_world) const {
-  return state_of(map_.at(voxel_index_of(map_.voxel_size_m(), p_world)));
+  const Voxel voxel = map_.at(voxel_index_of(map_.voxel_size_m(), p_world));
+  return state_of(voxel);
 }
 
 std::vector<VoxelState> MapQueries::states_at(std::span<const Eigen::Vector3d> points_world) const {
@@ -132,6 +150,38 @@ bool MapQueries::collides(const Eigen::Vector3d& low_world, const Eigen::Vector3
   return false;
 }
 
+std::optional<Obstacle> MapQueries::nearest_obstacle(const Eigen::Vector3d& p_world,
+                                                     double range_m) const {
+  const double block_m = map_.voxel_size_m() * kBlockSide;
+  const Eigen::Vector3i center = block_of(voxel_index_of(map_.voxel_size_m(), p_world));
+  std::optional<Obstacle> nearest;
+  const auto reach = [&] { return nearest ? nearest->distance_m : range_m; };
+  // A block of shell s is farther than (s - 1) blocks.
+  for (int shell = 0; (shell - 1) * block_m <= reach(); ++shell)
+    for_each_in_shell(center, shell, [&](const Eigen::Vector3i& index) {
+      const Eigen::Vector3d low = index.cast<double>() * block_m;
+      if (distance2(p_world, low, (low.array() + block_m).matrix()) > reach() * reach()) return;
+      if (const VoxelBlock* const block = map_.find_block(index))
+        search_nearest(*block, p_world, range_m, nearest);
+    });
+  return nearest;
+}
+
+void MapQueries::search_nearest(const VoxelBlock& block, const Eigen::Vector3d& p_world,
+                                double range_m, std::optional<Obstacle>& nearest) const {
+  const double size_m = map_.voxel_size_m();
+  for (int i = 0; i < kVoxelsPerBlock; ++i) {
+    if (!is_obstacle(state_of(block.voxels[static_cast<std::size_t>(i)]))) continue;
+    const Eigen::Vector3i voxel = voxel_at(block.index, i);
+    const Eigen::Vector3d low = voxel.cast<double>() * size_m;
+    const double distance_m = std::sqrt(distance2(p_world, low, (low.array() + size_m).matrix()));
+    if (distance_m > range_m) continue;
+    if (!nearest || distance_m < nearest->distance_m ||
+        (distance_m == nearest->distance_m && LatticeOrder{}(voxel, nearest->voxel)))
+      nearest = Obstacle{voxel, distance_m};
+  }
+}
+
 bool MapQueries::box_collides(const Eigen::Vector3d& low_world,
                               const Eigen::Vector3d& high_world) const {
   return collides(low_world, high_world,
@@ -144,6 +194,29 @@ bool MapQueries::ball_collides(const Eigen::Vector3d& center_world, double radiu
                   [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
                     return distance2(center_world, low, high) <= radius_m * radius_m;
                   });
+}
+
+std::vector<Eigen::Vector3i> frontier_voxels(const VoxelMap& map, const QueryParams& params,
+                                             const VoxelBounds& box) {
+  const MapQueries queries(map, params);
+  NearbyVoxels voxels(map);
+  std::vector<Eigen::Vector3i> frontier;
+  const auto is_unknown = [&](const Eigen::Vector3i& voxel) {
+    return queries.state_of(voxels.at(voxel)) == VoxelState::unknown;
+  };
+  for (const VoxelBlock* const block : map.blocks_in(box))
+    for (int i = 0; i < kVoxelsPerBlock; ++i) {
+      const Eigen::Vector3i voxel = voxel_at(block->index, i);
+      if (!contains(box, voxel) ||
+          queries.state_of(block->voxels[static_cast<std::size_t>(i)]) != VoxelState::free)
+        continue;
+      if (std::ranges::any_of(
+              neighbour_steps(Neighbourhood::faces),
+              [&](const Eigen::Vector3i& step) { return is_unknown(voxel + step); }))
+        frontier.push_back(voxel);
+    }
+  std::ranges::sort(frontier, LatticeOrder{});
+  return frontier;
 }
 
 }  // namespace stereovox

@@ -1,4 +1,5 @@
-// What planners ask of a map: where a ray ends, whether a box or a ball would touch something. A
+// What planners ask of a map: where a ray ends, whether a box or a ball would touch something, what
+// is nearest, where the unknown begins (distance_map.h: how far everything is from obstacles). A
 // voxel is occupied when its state is above a threshold and it was observed often enough.
 //
 //   const MapQueries queries(map, {.min_observations = 3});
@@ -32,12 +33,20 @@ struct RayHit {
   VoxelState state = VoxelState::occupied;
 };
 
+struct Obstacle {
+  Eigen::Vector3i voxel;
+  double distance_m = 0;  // to the nearest point of its cube; 0 inside
+};
+
 // Refers to the map, which must not change while a query runs. A query costs the voxels it meets.
 class MapQueries {
  public:
   explicit MapQueries(const VoxelMap& map, const QueryParams& params = {});
 
-  VoxelState state_of(const Voxel& voxel) const;
+  VoxelState state_of(const Voxel& voxel) const { return state(voxel.state, voxel.observations); }
+  VoxelState state_of(const PackedVoxel& voxel) const {
+    return state(voxel.state, voxel.observations);
+  }
   VoxelState state_at(const Eigen::Vector3d& p_world) const;
   std::vector<VoxelState> states_at(std::span<const Eigen::Vector3d> points_world) const;
 
@@ -47,12 +56,23 @@ class MapQueries {
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_world,
                                  const Eigen::Vector3d& direction_world, double range_m) const;
 
+  // The nearest voxel that counts as an obstacle by QueryParams, of those with a point within
+  // `range_m` of `p_world`; of several the first in the canonical order. Unknown space counts only
+  // in blocks that exist.
+  std::optional<Obstacle> nearest_obstacle(const Eigen::Vector3d& p_world, double range_m) const;
+
   // Whether a voxel that counts as occupied has a point in common with the closed box or ball.
   bool box_collides(const Eigen::Vector3d& low_world, const Eigen::Vector3d& high_world) const;
   bool ball_collides(const Eigen::Vector3d& center_world, double radius_m) const;
 
  private:
+  VoxelState state(float state, int observations) const {
+    if (observations == 0 || observations < params_.min_observations) return VoxelState::unknown;
+    return state > params_.threshold ? VoxelState::occupied : VoxelState::free;
+  }
   bool is_obstacle(VoxelState state) const;
+  void search_nearest(const VoxelBlock& block, const Eigen::Vector3d& p_world, double range_m,
+                      std::optional<Obstacle>& nearest) const;
   template <class Touches>
   bool collides(const Eigen::Vector3d& low_world, const Eigen::Vector3d& high_world,
                 Touches touches) const;
@@ -60,5 +80,10 @@ class MapQueries {
   const VoxelMap& map_;
   QueryParams params_;
 };
+
+// The free voxels in the box with an unknown one behind one of their six faces, in the canonical
+// order: where a robot that explores learns more.
+std::vector<Eigen::Vector3i> frontier_voxels(const VoxelMap& map, const QueryParams& params,
+                                             const VoxelBounds& box);
 
 }  // namespace stereovox

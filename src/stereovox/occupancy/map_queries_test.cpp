@@ -11,9 +11,7 @@ namespace {
 constexpr double kSize_m = 0.1;
 
 void set(VoxelMap& map, const Eigen::Vector3i& voxel, float state, std::uint16_t observations = 5) {
-  map.find_or_create_block(block_of(voxel))
-      .voxels[static_cast<std::size_t>(position_in_block(voxel))] = {
-      .state = state, .last_seen_ms = 0, .observations = observations};
+  map.set(voxel, {.state = state, .last_seen_ms = 0, .observations = observations});
 }
 
 // A free corridor along x from voxel 0 to 19 that ends at an occupied voxel.
@@ -124,6 +122,78 @@ TEST(MapQueries, ABodyCollidesWithUnknownSpaceWhenItShall) {
   const MapQueries careful(map, {.unknown = UnknownSpace::is_occupied});
   EXPECT_FALSE(careful.box_collides({0.31, 0.02, 0.02}, {0.69, 0.08, 0.08}));
   EXPECT_TRUE(careful.box_collides({0.31, 0.02, 0.02}, {0.69, 0.12, 0.08}));
+}
+
+VoxelMap scattered_map(std::mt19937& random, int voxels) {
+  VoxelMap map(kSize_m);
+  std::uniform_int_distribution<int> place(-25, 25);
+  for (int i = 0; i < voxels; ++i)
+    set(map, {place(random), place(random), place(random)}, random() % 3 == 0 ? 0.9F : 0.1F);
+  return map;
+}
+
+// The plain twin: looks at every voxel.
+std::optional<Obstacle> nearest_by_force(const VoxelMap& map, const Eigen::Vector3d& p,
+                                         double range_m) {
+  std::optional<Obstacle> nearest;
+  for (const VoxelBlock* block : map.sorted_blocks())
+    for (int i = 0; i < kVoxelsPerBlock; ++i) {
+      const Eigen::Vector3i voxel = voxel_at(block->index, i);
+      if (MapQueries(map).state_of(map.at(voxel)) != VoxelState::occupied) continue;
+      const Eigen::Vector3d low = voxel.cast<double>() * kSize_m;
+      const Eigen::Vector3d high = (low.array() + kSize_m).matrix();
+      const double distance_m = (p - p.cwiseMax(low).cwiseMin(high)).norm();
+      if (distance_m > range_m) continue;
+      if (!nearest || distance_m < nearest->distance_m ||
+          (distance_m == nearest->distance_m && LatticeOrder{}(voxel, nearest->voxel)))
+        nearest = Obstacle{voxel, distance_m};
+    }
+  return nearest;
+}
+
+TEST(MapQueries, TheNearestObstacleIsWhatATwinFindsThatLooksAtAll) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> place(-4.0, 4.0), range(0.0, 3.0);
+  int found = 0;
+  for (const int voxels : {5, 60, 2000}) {
+    const VoxelMap map = scattered_map(random, voxels);
+    const MapQueries queries(map);
+    for (int trial = 0; trial < 90; ++trial) {
+      Eigen::Vector3d p(place(random), place(random), place(random));
+      if (trial % 4 == 0) p = (p * 10.0).array().round() / 10.0;  // on faces: many are as near
+      const double range_m = range(random);
+      const auto nearest = queries.nearest_obstacle(p, range_m);
+      const auto expected = nearest_by_force(map, p, range_m);
+      ASSERT_EQ(nearest.has_value(), expected.has_value());
+      if (!nearest) continue;
+      ++found;
+      EXPECT_NEAR(nearest->distance_m, expected->distance_m, 1e-12);
+      if (trial % 4 != 0) {
+        EXPECT_EQ(nearest->voxel, expected->voxel);
+      }
+    }
+  }
+  EXPECT_GT(found, 80);
+}
+
+TEST(MapQueries, TheFrontierIsWhereFreeSpaceMeetsTheUnknown) {
+  std::mt19937 random(13);
+  const VoxelMap map = scattered_map(random, 60'000);
+  const MapQueries queries(map);
+  const VoxelBounds box{{-20, -30, -9}, {20, 11, 30}};
+  std::vector<Eigen::Vector3i> expected;
+  Eigen::Vector3i v;
+  for (v.x() = box.min.x(); v.x() <= box.max.x(); ++v.x())
+    for (v.y() = box.min.y(); v.y() <= box.max.y(); ++v.y())
+      for (v.z() = box.min.z(); v.z() <= box.max.z(); ++v.z()) {
+        bool meets = false;
+        for (int axis = 0; axis < 3; ++axis)
+          for (const int side : {-1, 1})
+            meets |= !is_known(map.at(v + side * Eigen::Vector3i::Unit(axis)));
+        if (meets && queries.state_of(map.at(v)) == VoxelState::free) expected.push_back(v);
+      }
+  EXPECT_GT(expected.size(), 1000U);
+  EXPECT_EQ(frontier_voxels(map, {}, box), expected);
 }
 
 }  // namespace

@@ -34,34 +34,21 @@ std::vector<Number> take_planes(ByteReader& reader, std::size_t count) {
   return values;
 }
 
-VoxelMask known_in(const VoxelBlock& block) {
-  VoxelMask known;
-  for (int i = 0; i < kVoxelsPerBlock; ++i)
-    if (is_known(block.voxels[static_cast<std::size_t>(i)])) known.set(i);
-  return known;
-}
-
-Eigen::Vector3i take_place(ByteReader& reader, const VoxelBlock* previous) {
+Eigen::Vector3i take_place(ByteReader& reader, const std::optional<Eigen::Vector3i>& previous) {
   Eigen::Vector3i place;
   for (int axis = 0; axis < 3; ++axis) place[axis] = reader.number<std::int32_t>();
   if ((place.array() < -kMaxBlockCoordinate).any() || (place.array() > kMaxBlockCoordinate).any())
     throw std::runtime_error("block lies outside the lattice");
-  if (previous != nullptr && !LatticeOrder{}(previous->index, place))
+  if (previous && !LatticeOrder{}(*previous, place))
     throw std::runtime_error("blocks are not in order");
   return place;
 }
 
-// The voxels that the masks announce, in order.
-std::vector<Voxel*> announced_voxels(ByteReader& reader, std::span<VoxelBlock* const> blocks) {
-  std::vector<Voxel*> voxels;
-  for (VoxelBlock* const block : blocks) {
-    VoxelMask known;
-    for (std::uint64_t& word : known.words) word = reader.number<std::uint64_t>();
-    if (known.is_empty()) throw std::runtime_error("block knows no voxel");
-    for_each_in(known,
-                [&](int i) { voxels.push_back(&block->voxels[static_cast<std::size_t>(i)]); });
-  }
-  return voxels;
+VoxelMask take_mask(ByteReader& reader) {
+  VoxelMask known;
+  for (std::uint64_t& word : known.words) word = reader.number<std::uint64_t>();
+  if (known.is_empty()) throw std::runtime_error("block knows no voxel");
+  return known;
 }
 
 void check(const Voxel& voxel) {
@@ -80,10 +67,10 @@ std::string encode_chunk(std::span<const VoxelBlock* const> blocks, VoxelFields 
   for (const VoxelBlock* const block : blocks)
     for (const int coordinate : block->index) append_number(bytes, coordinate);
   for (const VoxelBlock* const block : blocks) {
-    const VoxelMask known = known_in(*block);
+    const VoxelMask known = block->voxels.known();
     for (const std::uint64_t word : known.words) append_number(bytes, word);
     for_each_in(known, [&](int i) {
-      const Voxel& voxel = block->voxels[static_cast<std::size_t>(i)];
+      const Voxel voxel = block->voxels[static_cast<std::size_t>(i)];
       states.push_back(voxel.state);
       times_ms.push_back(voxel.last_seen_ms);
       counts.push_back(voxel.observations);
@@ -98,26 +85,36 @@ std::string encode_chunk(std::span<const VoxelBlock* const> blocks, VoxelFields 
 }
 
 DecodedChunk decode_chunk(std::string_view bytes, VoxelFields fields, int block_count,
-                          const VoxelBlock* previous, VoxelMap& map) {
+                          const std::optional<Eigen::Vector3i>& previous,
+                          const NewBlock& new_block) {
   ByteReader reader(bytes);
+  DecodedChunk decoded{0, previous};
   std::vector<VoxelBlock*> blocks;
   for (int i = 0; i < block_count; ++i) {
-    blocks.push_back(&map.find_or_create_block(take_place(reader, previous)));
-    previous = blocks.back();
+    decoded.last_block = take_place(reader, decoded.last_block);
+    blocks.push_back(&new_block(*decoded.last_block));
   }
-  const std::vector<Voxel*> voxels = announced_voxels(reader, blocks);
-  const auto states = take_planes<float>(reader, voxels.size());
-  const auto times_ms = take_planes<std::uint32_t>(reader, voxels.size());
-  const auto counts = take_planes<std::uint16_t>(reader, voxels.size());
+  std::vector<VoxelMask> known;
+  for (int i = 0; i < block_count; ++i) {
+    known.push_back(take_mask(reader));
+    decoded.known_voxels += known.back().count();
+  }
+  const auto states = take_planes<float>(reader, decoded.known_voxels);
+  const auto times_ms = take_planes<std::uint32_t>(reader, decoded.known_voxels);
+  const auto counts = take_planes<std::uint16_t>(reader, decoded.known_voxels);
   const auto ignorances = fields == VoxelFields::all
-                              ? take_planes<std::uint16_t>(reader, voxels.size())
-                              : std::vector<std::uint16_t>(voxels.size(), 0);
+                              ? take_planes<std::uint16_t>(reader, decoded.known_voxels)
+                              : std::vector<std::uint16_t>(decoded.known_voxels, 0);
   if (!reader.is_at_end()) throw std::runtime_error("bytes are left over");
-  for (std::size_t i = 0; i < voxels.size(); ++i) {
-    *voxels[i] = {states[i], times_ms[i], counts[i], ignorances[i]};
-    check(*voxels[i]);
-  }
-  return {voxels.size(), previous};
+  std::size_t at = 0;
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for_each_in(known[b], [&](int i) {
+      const Voxel voxel{states[at], times_ms[at], counts[at], ignorances[at]};
+      check(voxel);
+      blocks[b]->voxels.set(static_cast<std::size_t>(i), voxel);
+      ++at;
+    });
+  return decoded;
 }
 
 }  // namespace stereovox

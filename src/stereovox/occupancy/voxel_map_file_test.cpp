@@ -11,11 +11,18 @@
 #include "stereovox/core/error.h"
 #include "stereovox/occupancy/byte_buffer.h"
 #include "stereovox/occupancy/crc32c.h"
+#include "stereovox/occupancy/tile_section.h"
 
 namespace stereovox {
 namespace {
 
 using testing::HasSubstr;
+using testing::MatchesRegex;
+
+std::filesystem::path temporary_path() {
+  return std::filesystem::temp_directory_path() /
+         ("stereovox_map_" + std::to_string(getpid()) + ".svx");
+}
 
 VoxelMap random_map(int blocks, unsigned seed = 1) {
   std::mt19937 random(seed);
@@ -28,9 +35,9 @@ VoxelMap random_map(int blocks, unsigned seed = 1) {
     VoxelBlock& block =
         map.find_or_create_block({coordinate(random), coordinate(random), coordinate(random)});
     for (int i = 0; i < 40; ++i)
-      block.voxels[std::size_t(position(random))] = {state(random), std::uint32_t(random()),
-                                                     std::uint16_t(1 + random() % 65535),
-                                                     std::uint16_t(random())};
+      block.voxels.set(std::size_t(position(random)),
+                       {state(random), std::uint32_t(random()), std::uint16_t(1 + random() % 65535),
+                        std::uint16_t(random())});
   }
   return map;
 }
@@ -56,7 +63,7 @@ std::string complaint_about(const std::string& bytes) {
 }
 
 TEST(VoxelMapFile, KeepsEverything) {
-  VoxelMap map = random_map(600);  // three chunks
+  VoxelMap map = random_map(600);
   map.attachments = {{"configuration", "voxel_size_m: 0.05\n"}, {"empty", ""}};
   const VoxelMap read = map_of(bytes_of(map));
   EXPECT_EQ(read.voxel_size_m(), 0.05);
@@ -68,12 +75,8 @@ TEST(VoxelMapFile, KeepsEverything) {
   for (const VoxelBlock* block : map.sorted_blocks()) {
     const VoxelBlock* const same = read.find_block(block->index);
     ASSERT_NE(same, nullptr);
-    for (std::size_t i = 0; i < block->voxels.size(); ++i) {
-      EXPECT_EQ(same->voxels[i].state, block->voxels[i].state);
-      EXPECT_EQ(same->voxels[i].last_seen_ms, block->voxels[i].last_seen_ms);
-      EXPECT_EQ(same->voxels[i].observations, block->voxels[i].observations);
-      EXPECT_EQ(same->voxels[i].ignorance, block->voxels[i].ignorance);
-    }
+    for (std::size_t i = 0; i < block->voxels.size(); ++i)
+      EXPECT_EQ(same->voxels[i], block->voxels[i]);
   }
 }
 
@@ -118,58 +121,69 @@ TEST(VoxelMapFile, EveryFlippedBitIsNoticed) {
 
 TEST(VoxelMapFile, SaysWhatIsWrong) {
   const std::string bytes = bytes_of(random_map(2));
-  std::string newer = bytes, damaged = bytes;
+  std::string newer = bytes, damaged = bytes, no_tile = bytes;
   newer[14] = 9;
-  damaged.back() = char(damaged.back() ^ 1);
+  damaged[kMapHeaderBytes + kTileHeadBytes] ^= 1;
+  no_tile[kMapHeaderBytes] = 'X';
   EXPECT_EQ(complaint_about(newer),
-            "map.svx: has format version 9, this program reads versions 1 to 2");
-  EXPECT_EQ(complaint_about(damaged), "map.svx: chunk 0 is damaged (its checksum does not match)");
+            "map.svx: has format version 9, this program reads versions 1 to 3");
+  EXPECT_THAT(complaint_about(damaged),
+              MatchesRegex("map.svx: tile \\(.*\\) is damaged \\(its checksum does not match\\)"));
+  EXPECT_EQ(complaint_about(no_tile), "map.svx: a tile has no mark where it should begin");
   EXPECT_EQ(complaint_about("P5 640 480 255 and so on"), "map.svx: is not a stereovox map");
   EXPECT_EQ(complaint_about(bytes + "x"), "map.svx: bytes follow the end of the map");
 }
 
-VoxelMap without_ignorance(const VoxelMap& map) {
-  VoxelMap plain(map.voxel_size_m(), map.floor_z_m());
-  plain.epoch_ns = map.epoch_ns;
-  plain.frames_integrated = map.frames_integrated;
-  for (const VoxelBlock* const block : map.sorted_blocks()) {
-    VoxelBlock& same = plain.find_or_create_block(block->index);
-    same.voxels = block->voxels;
-    for (Voxel& voxel : same.voxels) voxel.ignorance = 0;
+TEST(VoxelMapFile, OnlyTilesWithIgnoranceTakeRoomForIt) {
+  VoxelMap map(0.1);
+  map.set({0, 0, 0}, {.state = 0.5F, .observations = 1});
+  const std::string without = bytes_of(map);
+  map.set({0, 0, 0}, {.state = 0.5F, .observations = 1, .ignorance = 7});
+  const std::string with = bytes_of(map);
+  EXPECT_EQ(without[kMapHeaderBytes + 16], 0);
+  EXPECT_EQ(with[kMapHeaderBytes + 16], 1);
+  EXPECT_EQ(map_of(with).at({0, 0, 0}).ignorance, 7);
+}
+
+// Files that earlier programs wrote, and what they hold.
+std::filesystem::path golden(const std::string& name) {
+  return std::filesystem::path(STEREOVOX_SOURCE_DIR) / "src/stereovox/occupancy/testdata" / name;
+}
+
+TEST(VoxelMapFile, FilesOfEveryVersionAreRead) {
+  for (const char* name : {"map_v1.svx", "map_v2.svx", "map_v3.svx"}) {
+    const VoxelMap map = read_voxel_map(golden(name));
+    EXPECT_EQ(map.voxel_size_m(), 0.5) << name;
+    EXPECT_EQ(map.frames_integrated, 2U) << name;
+    EXPECT_EQ(map.known_voxel_count(), 562U) << name;
+    EXPECT_EQ(map.attachments.size(), 2U) << name;
   }
-  return plain;
 }
 
-TEST(VoxelMapFile, OnlyAMapWithIgnoranceNeedsVersionTwo) {
-  const VoxelMap map = random_map(3);
-  const std::string with = bytes_of(map), without = bytes_of(without_ignorance(map));
-  EXPECT_EQ(with[14], 2);
-  EXPECT_EQ(without[14], 1);
-  EXPECT_LT(without.size(), with.size());
+TEST(VoxelMapFile, AMapReadFromVersionOneIsWrittenAsVersionThree) {
+  std::ifstream file(golden("map_v3.svx"), std::ios::binary);
+  std::ostringstream expected;
+  expected << file.rdbuf();
+  EXPECT_TRUE(bytes_of(read_voxel_map(golden("map_v1.svx"))) == expected.str());
 }
 
-TEST(VoxelMapFile, AMapOfVersionOneIsReadAndHasNoIgnorance) {
-  const VoxelMap plain = without_ignorance(random_map(600));
-  const std::string bytes = bytes_of(plain);
-  const VoxelMap read = map_of(bytes);
-  EXPECT_EQ(read.known_voxel_count(), plain.known_voxel_count());
-  EXPECT_EQ(bytes_of(read), bytes);
+TEST(VoxelMapFile, DamagedFilesOfOldVersionsAreRefused) {
+  std::ifstream file(golden("map_v2.svx"), std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  std::string damaged = bytes.str();
+  damaged.back() ^= 1;
+  EXPECT_EQ(complaint_about(damaged), "map.svx: chunk 0 is damaged (its checksum does not match)");
+  EXPECT_EQ(complaint_about(bytes.str().substr(0, damaged.size() / 2)), "map.svx: is cut off");
 }
 
 // A header with valid checksum, as a hostile writer can make it.
-std::string header(double voxel_size_m, std::uint64_t blocks, std::uint32_t attachments) {
-  std::string bytes = "STEREOVOX-MAP\n";
-  append_number(bytes, std::uint16_t{1});
-  append_number(bytes, voxel_size_m);
-  append_number(bytes, 0.0);
-  append_number(bytes, std::uint8_t{0});
-  append_number(bytes, std::int64_t{0});
-  append_number(bytes, std::uint32_t{0});
-  append_number(bytes, blocks);
-  append_number(bytes, std::uint64_t{0});
-  append_number(bytes, attachments);
-  append_number(bytes, crc32c(bytes));
-  return bytes;
+std::string header(std::uint16_t version, double voxel_size_m, std::uint64_t blocks,
+                   std::uint32_t attachments) {
+  return encode_header({.version = version,
+                        .voxel_size_m = voxel_size_m,
+                        .blocks = blocks,
+                        .attachments = attachments});
 }
 
 std::string section_head(std::uint32_t blocks, std::uint32_t size, std::uint32_t compressed) {
@@ -178,21 +192,57 @@ std::string section_head(std::uint32_t blocks, std::uint32_t size, std::uint32_t
   return bytes;
 }
 
+std::string tile_head(int x, std::uint32_t blocks, std::uint32_t known, std::uint32_t size,
+                      std::uint32_t compressed) {
+  std::string bytes(kTileMark);
+  for (const int coordinate : {x, 0, 0}) append_number(bytes, coordinate);
+  append_number(bytes, std::uint8_t{0});
+  bytes += section_head(blocks, known, size);
+  append_number(bytes, compressed);
+  append_number(bytes, crc32c(bytes));
+  return bytes;
+}
+
 TEST(VoxelMapFile, ImpossibleSizesAreRefusedBeforeTheyAreBelieved) {
-  EXPECT_THAT(complaint_about(header(0.05, 1, 0) + section_head(1, 4'000'000'000U, 9)),
+  EXPECT_THAT(complaint_about(header(1, 0.05, 1, 0) + section_head(1, 4'000'000'000U, 9)),
               HasSubstr("chunk 0 claims 4000000000 bytes"));
-  EXPECT_THAT(complaint_about(header(0.05, 1, 0) + section_head(1, 100, 4'000'000'000U)),
+  EXPECT_THAT(complaint_about(header(1, 0.05, 1, 0) + section_head(1, 100, 4'000'000'000U)),
               HasSubstr("claims 100 bytes, 4000000000 compressed"));
-  EXPECT_THAT(complaint_about(header(0.05, 0, 1) + section_head(0, 67'000'000, 60'000'000)),
+  EXPECT_THAT(complaint_about(header(3, 0.05, 0, 1) + section_head(0, 67'000'000, 60'000'000)),
               HasSubstr("is cut off"));
-  EXPECT_EQ(complaint_about(header(0.05, std::uint64_t{1} << 60, 0)), "map.svx: is cut off");
-  EXPECT_THAT(complaint_about(header(-1.0, 0, 0)),
+  EXPECT_EQ(complaint_about(header(3, 0.05, std::uint64_t{1} << 60, 0)), "map.svx: is cut off");
+  EXPECT_THAT(complaint_about(header(3, -1.0, 0, 0)),
               HasSubstr("map.svx: header: voxel size is -1 m"));
+  const std::string start = header(3, 0.05, 9, 0);
+  EXPECT_THAT(complaint_about(start + tile_head(0, 65, 65, 10, 10)),
+              HasSubstr("impossible number"));
+  EXPECT_THAT(complaint_about(start + tile_head(0, 1, 513, 10, 10)),
+              HasSubstr("impossible number"));
+  EXPECT_THAT(complaint_about(start + tile_head(0, 1, 1, 9000, 10)), HasSubstr("more bytes"));
+  EXPECT_THAT(complaint_about(start + tile_head(0, 1, 1, 100, 4'000'000'000U)),
+              HasSubstr("more bytes"));
+  EXPECT_THAT(complaint_about(start + tile_head(300'000, 1, 1, 10, 10)),
+              HasSubstr("outside the lattice"));
+}
+
+TEST(VoxelMapFile, TilesAreReadOneByOne) {
+  const std::filesystem::path path = temporary_path();
+  const VoxelMap map = random_map(300);
+  write_voxel_map(path, map);
+  VoxelMapTiles file(path);
+  EXPECT_EQ(file.header().known_voxels, map.known_voxel_count());
+  VoxelMap again = file.empty_map();
+  std::size_t known = 0;
+  for (const TileListing& tile : file.tiles()) {
+    file.read(tile, again);
+    EXPECT_EQ(again.known_voxel_count(), known += tile.known_voxels);
+  }
+  EXPECT_EQ(bytes_of(again), bytes_of(map));
+  std::filesystem::remove(path);
 }
 
 TEST(VoxelMapFile, IsWrittenAndReadByPath) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() /
-                                     ("stereovox_map_" + std::to_string(getpid()) + ".svx");
+  const std::filesystem::path path = temporary_path();
   const VoxelMap map = random_map(5);
   write_voxel_map(path, map);
   EXPECT_EQ(bytes_of(read_voxel_map(path)), bytes_of(map));

@@ -11,8 +11,7 @@ namespace stereovox {
 namespace {
 
 void set(VoxelMap& map, const Eigen::Vector3i& voxel, float state) {
-  map.find_or_create_block(block_of(voxel)).voxels[std::size_t(position_in_block(voxel))] = {state,
-                                                                                             0, 1};
+  map.set(voxel, {state, 0, 1});
 }
 
 TEST(BlockIndex, VoxelsAndTheirPlaceInABlockAreInverse) {
@@ -38,7 +37,7 @@ TEST(BlockIndex, FindsWhatWasInsertedAndNothingElse) {
 
 TEST(VoxelMap, KnowsNothingAtFirst) {
   const VoxelMap map(0.05);
-  EXPECT_EQ(map.find({0, 0, 0}), nullptr);
+  EXPECT_EQ(map.find_block({0, 0, 0}), nullptr);
   EXPECT_FALSE(is_known(map.at({0, 0, 0})));
   EXPECT_FALSE(map.bounds().has_value());
   EXPECT_EQ(map.known_voxel_count(), 0U);
@@ -48,8 +47,7 @@ TEST(VoxelMap, UnknownVoxelsOfAnExistingBlockStayUnknown) {
   VoxelMap map(0.05);
   set(map, {1, 2, 3}, 0.75F);
   EXPECT_EQ(map.at({1, 2, 3}).state, 0.75F);
-  ASSERT_NE(map.find({1, 2, 4}), nullptr);
-  EXPECT_FALSE(is_known(*map.find({1, 2, 4})));
+  EXPECT_FALSE(is_known(map.at({1, 2, 4})));
   EXPECT_EQ(map.known_voxel_count(), 1U);
 }
 
@@ -81,12 +79,52 @@ TEST(VoxelMap, ACopyIsIndependent) {
 }
 
 TEST(VoxelMap, LooksUpFarBeyondTheLatticeSafely) {
-  EXPECT_EQ(VoxelMap(0.05).find({2'000'000'000, 0, 0}), nullptr);
+  EXPECT_FALSE(is_known(VoxelMap(0.05).at({2'000'000'000, 0, 0})));
 }
 
 TEST(VoxelMap, RefusesImpossibleSizes) {
   for (const double size_m : {0.0, -0.05, 100.0, std::nan("")})
     EXPECT_THROW(VoxelMap map(size_m), Error) << size_m;
+}
+
+std::vector<Eigen::Vector3i> places_of(const std::vector<const VoxelBlock*>& blocks) {
+  std::vector<Eigen::Vector3i> places;
+  for (const VoxelBlock* block : blocks) places.push_back(block->index);
+  return places;
+}
+
+TEST(VoxelMap, BlocksInABoxAreThoseThatItTouches) {
+  std::mt19937 random(4);
+  std::uniform_int_distribution<int> place(-20, 20), voxel(-200, 200);
+  VoxelMap map(0.05);
+  for (int i = 0; i < 2000; ++i)
+    map.find_or_create_block({place(random), place(random), place(random)});
+  for (int trial = 0; trial < 50; ++trial) {
+    const Eigen::Vector3i a(voxel(random), voxel(random), voxel(random));
+    const VoxelBounds box{a, a + Eigen::Vector3i::Constant(trial)};
+    std::vector<Eigen::Vector3i> expected;
+    for (const VoxelBlock* block : map.sorted_blocks()) {
+      const Eigen::Array3i low = block->index.array() * kBlockSide;
+      if ((low + kBlockSide > box.min.array()).all() && (low <= box.max.array()).all())
+        expected.push_back(block->index);
+    }
+    EXPECT_EQ(places_of(map.blocks_in(box)), expected);
+  }
+}
+
+TEST(VoxelMap, TellsWhichBlocksChangedSinceAStamp) {
+  VoxelMap map(0.05);
+  set(map, {0, 0, 0}, 0.5F);
+  set(map, {100, 0, 0}, 0.5F);
+  EXPECT_EQ(map.blocks_changed_since(0).size(), 2U);
+  const ChangeStamp stamp = map.change_stamp();
+  EXPECT_TRUE(map.blocks_changed_since(stamp).empty());
+  set(map, {100, 0, 0}, 0.6F);
+  set(map, {-1, 0, 0}, 0.6F);
+  map.erase_block({0, 0, 0});
+  EXPECT_THAT(map.blocks_changed_since(stamp),
+              testing::ElementsAre(Eigen::Vector3i(-1, 0, 0), Eigen::Vector3i(0, 0, 0),
+                                   Eigen::Vector3i(12, 0, 0)));
 }
 
 }  // namespace

@@ -20,6 +20,11 @@ struct VoxelMask {
   bool is_empty() const {
     return std::ranges::all_of(words, [](std::uint64_t word) { return word == 0; });
   }
+  std::size_t count() const {
+    std::size_t count = 0;
+    for (const std::uint64_t word : words) count += static_cast<std::size_t>(std::popcount(word));
+    return count;
+  }
   VoxelMask& operator|=(const VoxelMask& other) {
     for (std::size_t i = 0; i < words.size(); ++i) words[i] |= other.words[i];
     return *this;

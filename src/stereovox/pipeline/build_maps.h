@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -45,6 +46,7 @@ struct BuildResult {
   int frames = 0, tracked = 0;
   double wall_s = 0.0;
   bool was_stopped = false;
+  std::string failure;  // why the map could not grow on: the disk or the memory; empty: it could
 
   double tracked_percent() const { return frames == 0 ? 0.0 : 100.0 * tracked / frames; }
 };
@@ -65,9 +67,14 @@ struct ProgressSink {
   std::function<bool()> should_stop = [] { return false; };  // asked before each frame
 };
 
+// With a memory limit, tiles out of view wait in a nameless file in `store_folder`. When that fails
+// the run ends there and `failure` says why; what was mapped is in the result.
+//
 // Poses come from odometry, or from `given_poses` of the left camera as calibrated; a frame that
 // has none there counts as lost. Throws Error for input that cannot be used.
-BuildResult build_maps(StereoSequence& sequence, const PipelineConfig& config,
-                       const std::optional<Trajectory>& given_poses, const ProgressSink& progress);
+BuildResult build_maps(
+    StereoSequence& sequence, const PipelineConfig& config,
+    const std::optional<Trajectory>& given_poses, const ProgressSink& progress,
+    const std::filesystem::path& store_folder = std::filesystem::temp_directory_path());
 
 }  // namespace stereovox

@@ -15,19 +15,17 @@ constexpr std::int64_t kPoseTolerance_ns = 1'000'000;
 // Between given poses farther apart than this nothing is interpolated.
 constexpr std::int64_t kMaxPoseGap_ns = 250'000'000;
 
-MapSegment empty_segment(int id, const WorldFrame& world, double voxel_size_m) {
-  return {id,           world,       VoxelMap(voxel_size_m, world.floor_z_m),
-          SightLines{}, WallFaces{}, Trajectory{}};
-}
-
 }  // namespace
 
 MapBuilder::MapBuilder(const Rectifier& rectifier, const PipelineConfig& config,
-                       const std::optional<Trajectory>& given_poses)
+                       const std::optional<Trajectory>& given_poses,
+                       const std::filesystem::path& store_folder)
     : rectifier_(rectifier),
       config_(config),
       given_poses_(given_poses),
-      odometry_(rectifier.camera(), config.odometry) {
+      store_folder_(store_folder),
+      odometry_(rectifier.camera(), config.odometry),
+      limits_memory_(config.memory_limit_mb > 0.0) {
   result_.camera = rectifier.camera();
 }
 
@@ -59,12 +57,15 @@ Progress MapBuilder::add(MatchedFrame frame) {
 }
 
 BuildResult MapBuilder::finish() {
+  limits_memory_ = false;  // what is left to do is little, and must not fail for want of a disk
   for (auto& [id, segment] : segments_) {
     if (!segment.placed && !segment.waiting.empty()) place(id, segment);
-    if (segment.placed) result_.segments.push_back(std::move(*segment.placed));
+    if (!segment.placed) continue;
+    for (const std::string& loss : segment.placed->map.forget_unreadable_tiles())
+      result_.warnings.push_back(loss);
+    result_.segments.push_back(std::move(*segment.placed));
   }
-  if (result_.segments.empty())
-    result_.segments.push_back(empty_segment(0, WorldFrame{}, config_.occupancy.voxel_size_m));
+  if (result_.segments.empty()) result_.segments.push_back(empty_segment(0, WorldFrame{}));
   std::ranges::stable_sort(result_.segments, std::ranges::greater{},
                            [](const MapSegment& s) { return s.trajectory.size(); });
   return std::move(result_);
@@ -111,9 +112,31 @@ void MapBuilder::place(int id, GrowingSegment& segment) {
                                            config_.world.ground_plane)});
   const WorldFrame world = given_poses_ ? world_of_given_poses(views, config_.world)
                                         : world_of_odometry(views, config_.world, id == 0);
-  segment.placed = empty_segment(id, world, config_.occupancy.voxel_size_m);
+  segment.placed = empty_segment(id, world);
   for (const Located& located : segment.waiting) map(located, *segment.placed);
   segment.waiting.clear();
+}
+
+MapSegment MapBuilder::empty_segment(int id, const WorldFrame& world) const {
+  MapSegment segment{
+      id,           world,       VoxelMap(config_.occupancy.voxel_size_m, world.floor_z_m),
+      SightLines{}, WallFaces{}, Trajectory{}};
+  if (limits_memory_) segment.map.use_store(store_folder_);
+  return segment;
+}
+
+// The maps of other segments go out first: nobody looks at them.
+void MapBuilder::keep_within_memory(MapSegment& current) {
+  if (!limits_memory_) return;
+  constexpr double kBytesPerMb = 1e6;
+  const auto limit = static_cast<std::size_t>(config_.memory_limit_mb * kBytesPerMb);
+  std::size_t others = 0;
+  for (auto& [id, segment] : segments_) {
+    if (!segment.placed || &*segment.placed == &current) continue;
+    segment.placed->map.keep_within(limit - std::min(limit, current.map.memory_bytes()));
+    others += segment.placed->map.memory_bytes();
+  }
+  current.map.keep_within(limit - std::min(limit, others));
 }
 
 void MapBuilder::map(const Located& located, MapSegment& segment) {
@@ -134,6 +157,7 @@ void MapBuilder::map(const Located& located, MapSegment& segment) {
   result_.times.add("occupancy", occupancy);
   result_.times.add("navmap", watch.elapsed());
   segment.trajectory.push_back({stamp_ns, T_world_camera});
+  keep_within_memory(segment);
 }
 
 }  // namespace stereovox

@@ -51,15 +51,16 @@ void write_text(const fs::path& path, const std::string& text) {
   write_file_atomically(path, [&](std::ostream& out) { out << text; });
 }
 
-// Threads never change results, so they must not change the map's bytes.
-std::string yaml_without_threads(PipelineConfig config) {
+// Threads and memory never change results, so they must not change the map's bytes.
+std::string yaml_without_resources(PipelineConfig config) {
   config.threads = 0;
+  config.memory_limit_mb = 0.0;
   return to_yaml(config);
 }
 
 void write_segment(const fs::path& folder, const PipelineConfig& config, MapSegment& segment) {
   make_folder(folder);
-  segment.map.attachments["config.yaml"] = yaml_without_threads(config);
+  segment.map.attachments["config.yaml"] = yaml_without_resources(config);
   segment.map.attachments[kSightLinesAttachment] = to_bytes(segment.sight_lines);
   if (!segment.wall_faces.is_empty())
     segment.map.attachments[kWallFacesAttachment] = to_bytes(segment.wall_faces);

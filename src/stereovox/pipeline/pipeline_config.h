@@ -23,6 +23,7 @@ struct PipelineConfig {
 
   int threads = 0;
   double min_tracked_percent = 50.0;
+  double memory_limit_mb = 0.0;
   SequenceParams dataset;
   RectificationParams rectification;
   MatcherParams matcher;
@@ -36,6 +37,9 @@ struct PipelineConfig {
          "worker threads, 0 = one for each core; never changes results");
     list("min_tracked_percent", min_tracked_percent, {0, 100},
          "a run that tracked fewer of its frames is below the quality gate");
+    list("memory_limit_mb", memory_limit_mb, {0, 1e7},
+         "memory for voxels, 0 = no limit; what is out of view waits on the disk; never changes "
+         "results");
     list.section("dataset", dataset);
     list.section("rectification", rectification);
     list.one_of("matcher", matcher, "which matcher finds the disparities");

@@ -81,12 +81,13 @@ ordered_json camera_json(const RectifiedCamera& camera) {
 
 MapCounts count_voxels(const VoxelMap& map, double threshold) {
   MapCounts counts;
-  for (const VoxelBlock* block : map.sorted_blocks())
-    for (const Voxel& voxel : block->voxels) {
+  map.for_each_block([&](const VoxelBlock& block) {
+    for (const Voxel voxel : block.voxels) {
       if (!is_known(voxel)) continue;
       ++counts.observed;
       ++(voxel.state > threshold ? counts.occupied : counts.free);
     }
+  });
   return counts;
 }
 
@@ -102,7 +103,7 @@ ordered_json report(const StereoSequence& sequence, const PipelineConfig& config
           {"segments", segments_json(result.segments)},
           {"skipped", skipped_json(sequence.skipped())},
           {"warnings", result.warnings},
-          {"stopped_early", result.was_stopped},
+          {"stopped_early", result.was_stopped || !result.failure.empty()},
           {"wall_s", result.wall_s},
           {"fps", result.wall_s > 0.0 ? result.frames / result.wall_s : 0.0},
           {"threads", config.thread_count()},
