@@ -26,7 +26,7 @@ constexpr int kSamplesPerPair = 40000;  // so that no pair outweighs the others
 constexpr int kNewtonSteps = 30;
 constexpr double kRidge = 1e-3;
 
-constexpr int kFeatures = 5;
+constexpr int kFeatures = 6;
 using Row = Eigen::Matrix<double, kFeatures, 1>;  // 1, then as in ConfidenceModel, with its signs
 using Square = Eigen::Matrix<double, kFeatures, kFeatures>;
 
@@ -37,8 +37,11 @@ struct Sample {
   bool is_right() const { return std::abs(error_px) <= kRightWithin_px; }
 };
 
-Row row_of(const PixelFeatures& f) {
-  return {1.0, f.log_ratio, -f.left_right_px, -f.log_variance, -f.local_cost};
+Row row_of(const PixelFeatures& f, int candidates) {
+  Row row;
+  row << 1.0, f.log_ratio, -f.left_right_px, -f.log_variance, -f.local_cost,
+      log_of_candidates(candidates);
+  return row;
 }
 
 // Where there is no true disparity there is no sample; what is infinite nothing can match.
@@ -54,8 +57,8 @@ void add_samples(const RectifiedPair& pair, const cv::Mat1f& truth_px, int dispa
     const int v = i / truth_px.cols, u = i % truth_px.cols;
     const double found_px = static_cast<double>(f.disparity(v, u)) / kStepsPerPixel;
     if (!(truth_px(v, u) > 0.0F) || found_px > u) continue;
-    samples.push_back(
-        {row_of(features_at(f, v, u, variance_px2(v, u))), found_px - truth_px(v, u)});
+    samples.push_back({row_of(features_at(f, v, u, variance_px2(v, u)), params.search.candidates()),
+                       found_px - truth_px(v, u)});
   }
 }
 
@@ -68,7 +71,9 @@ void add_pair(const std::string& folder, std::vector<Sample>& samples) {
       read_disparity(std::filesystem::exists(truth) ? truth : folder + "/disp_gt.pfm").disparity_px;
   double largest_px = 0;
   cv::minMaxLoc(truth_px, nullptr, &largest_px);
-  add_samples(pair, truth_px, static_cast<int>(largest_px) + 1, kSamplesPerPair, samples);
+  // The more disparities are searched, the better is the second best of them.
+  for (const int range_px : {static_cast<int>(largest_px) + 1, kMaxCandidates})
+    add_samples(pair, truth_px, range_px, kSamplesPerPair, samples);
 }
 
 // Independent noise of `levels` grey values in both images, as fine as pixels or coarser.
@@ -127,8 +132,8 @@ std::vector<Bin> bins_of(std::span<const Sample> samples, const Row& weights) {
 void print(const std::vector<Bin>& bins, const Row& w) {
   std::cout << fmt::format(
       ".bias = {:.3f}, .ratio = {:.3f}, .left_right = {:.3f}, .variance = {:.3f}, .local = "
-      "{:.4f}\n",
-      w[0], w[1], w[2], w[3], w[4]);
+      "{:.4f}, .candidates = {:.3f}\n",
+      w[0], w[1], w[2], w[3], w[4], w[5]);
   for (const Bin& bin : bins)
     std::cout << fmt::format("right {:.3f}, sigma {:.2f} px, {} samples\n",
                              static_cast<double>(bin.right) / std::max(bin.count, 1),

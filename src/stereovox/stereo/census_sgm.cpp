@@ -20,13 +20,14 @@ constexpr int kWarmUpRows = 12;
 // Fitted by apps/fit_confidence to cones, motorcycle and six frames of a rendered room. The last
 // three bins were not reached.
 constexpr ConfidenceModel kModel = {
-    .bias = 2.865,
-    .ratio = 1.898,
-    .left_right = 0.242,
-    .variance = 0.637,
+    .bias = 2.685,
+    .ratio = 1.778,
+    .left_right = 0.294,
+    .variance = 0.502,
     .local = 0.0378,
-    .right = {0.157, 0.296, 0.379, 0.459, 0.557, 0.803, 0.954, 0.985, 0.987, 0.989, 0.994, 0.994},
-    .sigma_px = {0.77, 0.72, 0.72, 0.71, 0.75, 0.65, 0.47, 0.35, 0.28, 0.22, 0.19, 0.19}};
+    .candidates = 0.315,
+    .right = {0.121, 0.246, 0.334, 0.434, 0.547, 0.792, 0.948, 0.983, 0.988, 0.990, 0.994, 0.994},
+    .sigma_px = {0.78, 0.71, 0.69, 0.70, 0.71, 0.64, 0.47, 0.36, 0.28, 0.22, 0.19, 0.19}};
 
 SweepParams sweep_params(const CensusSgmParams& p) {
   if (p.smoothness_large <= p.smoothness_small)

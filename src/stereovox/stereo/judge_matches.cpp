@@ -65,7 +65,7 @@ class Judge {
         const ConfidenceModel& model)
       : pair_(pair),
         features_(features),
-        table_(model),
+        table_(model, search.candidates()),
         min_log_ratio_(static_cast<int>(std::lround(
             -kLogRatioSteps * std::log1p(-kPercent * double(search.uniqueness_ratio_percent))))),
         max_left_right_(search.left_right_tolerance_px * kStepsPerPixel),

@@ -72,6 +72,7 @@ constexpr ConfidenceModel kSure = {.bias = 6.0,
                                    .left_right = 0.0,
                                    .variance = 0.0,
                                    .local = 0.0,
+                                   .candidates = 0.0,
                                    .right = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1},
                                    .sigma_px = {1, 1, 1, 1, 1, 1, 1, 1, 0.5, 0.5, 0.5, 0.5}};
 

@@ -55,6 +55,11 @@ float between(const std::array<double, ConfidenceModel::kBins>& bins, double pla
 
 }  // namespace
 
+double log_of_candidates(int candidates) {
+  constexpr double kUsual = 64;
+  return std::log2(candidates / kUsual);
+}
+
 float log_of_raised_variance(float variance_px2) {
   constexpr float kOnePerOctave = 0x1p-23F;
   const auto bits = std::bit_cast<std::int32_t>(1.0F + std::min(variance_px2, kMaxVariance_px2));
@@ -85,10 +90,11 @@ PixelFeatures features_at(const MatchFeatures& features, int v, int u, float var
           log_of_raised_variance(variance_px2), static_cast<float>(features.local_cost(v, u))};
 }
 
-CredenceTable::CredenceTable(const ConfidenceModel& model) {
+CredenceTable::CredenceTable(const ConfidenceModel& model, int candidates) {
   constexpr double kRounding = 0.5;
   const auto in_levels = [](double logit) { return static_cast<float>(logit * kLevelsPerLogit); };
-  bias_ = in_levels(model.bias - ConfidenceModel::kMinLogit) + static_cast<float>(kRounding);
+  const double bias = model.bias + model.candidates * log_of_candidates(candidates);
+  bias_ = in_levels(bias - ConfidenceModel::kMinLogit) + static_cast<float>(kRounding);
   log_ratio_ = in_levels(model.ratio / kLogRatioSteps);
   left_right_ = in_levels(-model.left_right / kStepsPerPixel);
   variance_ = in_levels(-model.variance);

@@ -37,14 +37,17 @@ struct PixelFeatures {
 
 struct ConfidenceModel {
   // logit = bias + ratio ln(second / best) - left_right |difference| -
-  //         variance log2(1 + variance) - local local_cost
-  double bias, ratio, left_right, variance, local;
+  //         variance log2(1 + variance) - local local_cost + candidates log2(searched / 64)
+  double bias, ratio, left_right, variance, local, candidates;
   // Of the disparities whose logit lies in each equal part of this span: the share that is right,
   // and the rms error of those.
   static constexpr double kMinLogit = -4.0, kMaxLogit = 8.0;
   static constexpr int kBins = 12;
   std::array<double, kBins> right, sigma_px;
 };
+
+// log2(candidates / 64): the more are searched, the better is the second best of them.
+double log_of_candidates(int candidates);
 
 // log2(1 + variance) by straight lines between powers of two, as the bits of a float have it.
 float log_of_raised_variance(float variance_px2);
@@ -65,7 +68,7 @@ class CredenceTable {
  public:
   static constexpr int kLevels = 255;
 
-  explicit CredenceTable(const ConfidenceModel& model);
+  CredenceTable(const ConfidenceModel& model, int candidates);
   Credence at(int level) const { return levels_[static_cast<std::size_t>(level)]; }
   int first_level_of(double confidence) const;  // kLevels where none is as sure
 

@@ -16,6 +16,7 @@ constexpr ConfidenceModel kModel = {
     .left_right = 0.5,
     .variance = 0.25,
     .local = 0.02,
+    .candidates = 0.5,
     .right = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.97, 0.99},
     .sigma_px = {1.2, 1.1, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1}};
 
@@ -26,7 +27,7 @@ MatchFeatures features_of(const cv::Mat1s& disparity) {
 }
 
 Credence credence_at(const MatchFeatures& features, int v, int u) {
-  const CredenceTable table(kModel);
+  const CredenceTable table(kModel, 64);
   std::vector<std::uint8_t> levels(features.disparity.cols);
   table.fill_level_row(features, v, levels.data());
   return table.at(levels[u]);
@@ -82,7 +83,7 @@ TEST(MatchConfidence, EachFeatureCountsAsTheModelSays) {
 }
 
 TEST(MatchConfidence, TheFirstLevelOfAConfidenceIsSureEnough) {
-  const CredenceTable table(kModel);
+  const CredenceTable table(kModel, 64);
   EXPECT_EQ(table.first_level_of(0.0), 0);
   EXPECT_EQ(table.first_level_of(1.0), CredenceTable::kLevels);
   const int level = table.first_level_of(0.5);
