@@ -33,8 +33,10 @@ void report_frame(const MatchedFrame& frame, const OdometryResult& motion, bool 
   if (motion.status == OdometryStatus::lost)
     warn(fmt::format("frame {} at {:.3f} s is lost: {}", frame.index, time_s, motion.reason));
   else if (verbose)
-    std::cout << fmt::format("frame {} at {:.3f} s: {} inliers of {} matches, rms {:.2f} px\n",
-                             frame.index, time_s, motion.inliers, motion.matches, motion.rms_px);
+    std::cout << fmt::format(
+        "frame {} at {:.3f} s: {} of {} points fit, {} of {} matches agree, rms {:.2f} px\n",
+        frame.index, time_s, motion.inliers, motion.expected, motion.consistent, motion.matches,
+        motion.rms_px);
 }
 
 Tracked track(StereoSequence& sequence, const PipelineConfig& config, bool verbose) {

@@ -99,6 +99,12 @@ std::vector<Eigen::Vector2d> expected_pixels(const RectifiedCamera& camera,
   return pixels;
 }
 
+// On a repeated pattern a wrong motion finds many consistent matches too, but not most of them.
+bool is_convincing(const InitialMotion& motion, const MatchingParams& params) {
+  return motion.consistent_count() >= params.enough_consistent &&
+         motion.consistent_count() >= params.enough_consistent_share * motion.matches;
+}
+
 }  // namespace
 
 InitialMotion find_initial_motion(const RectifiedCamera& camera, const FeatureSet& reference,
@@ -116,7 +122,7 @@ InitialMotion find_initial_motion(const RectifiedCamera& camera, const FeatureSe
     if (motion.consistent.size() > best.consistent.size() || best.matches == 0) best = motion;
   };
   if (T_reference_predicted) attempt(T_reference_predicted, params.predicted_window);
-  if (best.consistent_count() >= params.enough_consistent) return best;
+  if (is_convincing(best, params)) return best;
   attempt(std::nullopt, params.narrow_window);
   attempt(std::nullopt, params.wide_window);
   return best;

@@ -16,6 +16,7 @@ struct MatchingParams {
   double narrow_window = 0.2;
   double wide_window = 0.6;
   int enough_consistent = 30;
+  double enough_consistent_share = 0.5;
   double max_sigmas = 3.0;
 
   void describe(ParameterList& list) {
@@ -26,7 +27,9 @@ struct MatchingParams {
          "the same without prediction, first of two tries of which the more consistent counts");
     list("wide_window", wide_window, {0.001, 2.0}, "the same, second try");
     list("enough_consistent", enough_consistent, {3, 1000},
-         "with fewer consistent matches near the predicted places the prediction is given up");
+         "with fewer consistent matches near the predicted places the other tries are made too");
+    list("enough_consistent_share", enough_consistent_share, {0.0, 1.0},
+         "the same with a smaller share of all matches: a repeated pattern may mislead");
     list("max_sigmas", max_sigmas, {0.5, 10.0},
          "standard deviations by which distances may change between consistent points");
   }
