@@ -176,6 +176,23 @@ TEST(EndToEnd, DisparityWritesWhatScoreReads) {
   EXPECT_TRUE(fs::exists(out / "picture.png"));
 }
 
+TEST(EndToEnd, DisparityWritesItsConfidence) {
+  const fs::path out = empty_folder("out");
+  const std::string made = "disparity " + quoted(kDemo / "left" / "000010.png") + " " +
+                           quoted(kDemo / "right" / "000010.png") + " -o " + quoted(out / "d.pfm") +
+                           " --confidence " + quoted(out / "c.pfm");
+  const ProgramResult with = run_program(made + " --set matcher.type=census_sgm");
+  EXPECT_EQ(with.exit_code, 0) << with.output;
+  EXPECT_EQ(fs::file_size(out / "c.pfm"), fs::file_size(out / "d.pfm"));
+  const ProgramResult without = run_program(made + " --set matcher.type=sgbm");
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_THAT(without.output, testing::HasSubstr("this matcher has none"));
+  const ProgramResult score = run_program("score disparity " + quoted(out / "d.pfm") + " " +
+                                          quoted(out / "d.pfm") + " --without-occlusions");
+  EXPECT_EQ(score.exit_code, 0) << score.output;
+  EXPECT_THAT(score.output, testing::HasSubstr("100.00 % of them with a disparity"));
+}
+
 TEST(EndToEnd, OdometryAndScoreTrajectoryWorkTogether) {
   const fs::path data = office_extract("data", 12);
   const fs::path out = empty_folder("out");

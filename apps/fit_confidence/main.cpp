@@ -1,14 +1,18 @@
 // Fits the confidence model of census_sgm: fit_confidence FOLDER...
-// Each folder holds left.png, right.png and disp_gt.png (KITTI's form). Prints the model for
-// stereo/census_sgm.cpp and how reliable it is on the same pairs.
+// Each folder holds left.png, right.png and disp_gt.png (KITTI's form) or disp_gt.pfm. Noise that
+// shows no scene at all is learned from, too. Prints the model for stereo/census_sgm.cpp and how
+// reliable it is on the same pairs.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <span>
 #include <vector>
 
 #include "stereovox/io/disparity_file.h"
@@ -22,7 +26,9 @@ constexpr int kSamplesPerPair = 40000;  // so that no pair outweighs the others
 constexpr int kNewtonSteps = 30;
 constexpr double kRidge = 1e-3;
 
-using Row = Eigen::Vector4d;  // 1, ln ratio, -left-right difference, -ln(1 + variance)
+constexpr int kFeatures = 6;
+using Row = Eigen::Matrix<double, kFeatures, 1>;  // 1, then as in ConfidenceModel, with its signs
+using Square = Eigen::Matrix<double, kFeatures, kFeatures>;
 
 struct Sample {
   Row features;
@@ -31,25 +37,58 @@ struct Sample {
   bool is_right() const { return std::abs(error_px) <= kRightWithin_px; }
 };
 
-void add_samples(const std::string& folder, std::vector<Sample>& samples) {
+Row row_of(const PixelFeatures& f, int candidates) {
+  Row row;
+  row << 1.0, f.log_ratio, -f.left_right_px, -f.log_variance, -f.local_cost,
+      log_of_candidates(candidates);
+  return row;
+}
+
+// Where there is no true disparity there is no sample; what is infinite nothing can match.
+void add_samples(const RectifiedPair& pair, const cv::Mat1f& truth_px, int disparity_range_px,
+                 int count, std::vector<Sample>& samples) {
+  CensusSgmParams params;
+  params.search.disparity_range_px = disparity_range_px;
+  const MatchFeatures f = match_features(pair, params, 1);
+  cv::Mat1f variance_px2(truth_px.size());
+  for (int v = 0; v < truth_px.rows; ++v) fill_variance_row(f.disparity, v, variance_px2[v]);
+  const int step = std::max(1, static_cast<int>(truth_px.total()) / count);
+  for (int i = 0; i < static_cast<int>(truth_px.total()); i += step) {
+    const int v = i / truth_px.cols, u = i % truth_px.cols;
+    const double found_px = static_cast<double>(f.disparity(v, u)) / kStepsPerPixel;
+    if (!(truth_px(v, u) > 0.0F) || found_px > u) continue;
+    samples.push_back({row_of(features_at(f, v, u, variance_px2(v, u)), params.search.candidates()),
+                       found_px - truth_px(v, u)});
+  }
+}
+
+void add_pair(const std::string& folder, std::vector<Sample>& samples) {
   RectifiedPair pair;
   pair.left = read_gray_image(folder + "/left.png").image;
   pair.right = read_gray_image(folder + "/right.png").image;
-  const cv::Mat1f truth_px = read_disparity(folder + "/disp_gt.png").disparity_px;
+  const std::string truth = folder + "/disp_gt.png";
+  const cv::Mat1f truth_px =
+      read_disparity(std::filesystem::exists(truth) ? truth : folder + "/disp_gt.pfm").disparity_px;
   double largest_px = 0;
   cv::minMaxLoc(truth_px, nullptr, &largest_px);
-  CensusSgmParams params;
-  params.search.disparity_range_px = static_cast<int>(largest_px) + 1;
-  const MatchFeatures f = match_features(pair, params, 1);
-  const int step = std::max(1, static_cast<int>(truth_px.total()) / kSamplesPerPair);
-  for (int i = 0; i < static_cast<int>(truth_px.total()); i += step) {
-    const int v = i / truth_px.cols, u = i % truth_px.cols;
-    if (!(truth_px(v, u) > 0.0F) || !std::isfinite(f.left_right_px(v, u))) continue;
-    const Row row(1.0, std::min(f.log_ratio(v, u), kMaxLogRatio),
-                  -std::min(f.left_right_px(v, u), kMaxLeftRight_px),
-                  -std::log1p(std::min(f.variance_px2(v, u), kMaxVariance_px2)));
-    samples.push_back({row, f.disparity_px(v, u) - truth_px(v, u)});
+  // The more disparities are searched, the better is the second best of them.
+  for (const int range_px : {static_cast<int>(largest_px) + 1, kMaxCandidates})
+    add_samples(pair, truth_px, range_px, kSamplesPerPair, samples);
+}
+
+// Independent noise of `levels` grey values in both images, as fine as pixels or coarser.
+void add_noise(int levels, double blur_px, std::vector<Sample>& samples) {
+  constexpr int kSamplesOfNoise = 2000;
+  const cv::Size size(320, 240);
+  cv::RNG random(static_cast<std::uint64_t>(levels));
+  RectifiedPair pair;
+  for (GrayImage* const image : {&pair.left, &pair.right}) {
+    image->pixels.create(size);
+    random.fill(image->pixels, cv::RNG::UNIFORM, 0, levels);
+    if (blur_px > 0) cv::GaussianBlur(image->pixels, image->pixels, {0, 0}, blur_px);
   }
+  const cv::Mat1f nothing(size, std::numeric_limits<float>::infinity());
+  add_samples(pair, nothing, CensusSgmParams{}.search.disparity_range_px, kSamplesOfNoise, samples);
 }
 
 double probability(double logit) { return 1.0 / (1.0 + std::exp(-logit)); }
@@ -59,7 +98,7 @@ Row fit(const std::vector<Sample>& samples) {
   Row weights = Row::Zero();
   for (int i = 0; i < kNewtonSteps; ++i) {
     Row gradient = -kRidge * weights;
-    Eigen::Matrix4d hessian = kRidge * Eigen::Matrix4d::Identity();
+    Square hessian = kRidge * Square::Identity();
     for (const Sample& s : samples) {
       const double p = probability(weights.dot(s.features));
       gradient += ((s.is_right() ? 1.0 : 0.0) - p) * s.features;
@@ -72,39 +111,43 @@ Row fit(const std::vector<Sample>& samples) {
 
 struct Bin {
   int count = 0, right = 0;
-  double probability_sum = 0, squared_px2 = 0;
+  double squared_px2 = 0;
 };
 
-void print_bins(const std::vector<Sample>& samples, const Row& weights) {
+// The pairs alone: noise says nothing about how often scenes are right.
+std::vector<Bin> bins_of(std::span<const Sample> samples, const Row& weights) {
   constexpr double kSpan = ConfidenceModel::kMaxLogit - ConfidenceModel::kMinLogit;
-  std::vector<Bin> bins(ConfidenceModel::kSigmaBins);
+  std::vector<Bin> bins(ConfidenceModel::kBins);
   for (const Sample& s : samples) {
-    const double logit = weights.dot(s.features);
-    const double place = (logit - ConfidenceModel::kMinLogit) / kSpan;
-    const int i = static_cast<int>(place * ConfidenceModel::kSigmaBins);
-    Bin& bin = bins[std::clamp(i, 0, ConfidenceModel::kSigmaBins - 1)];
+    const double place = (weights.dot(s.features) - ConfidenceModel::kMinLogit) / kSpan;
+    const int i = static_cast<int>(place * ConfidenceModel::kBins);
+    Bin& bin = bins[static_cast<std::size_t>(std::clamp(i, 0, ConfidenceModel::kBins - 1))];
     ++bin.count;
-    bin.probability_sum += probability(logit);
     bin.right += s.is_right() ? 1 : 0;
     bin.squared_px2 += s.is_right() ? s.error_px * s.error_px : 0.0;
   }
+  return bins;
+}
+
+void print(const std::vector<Bin>& bins, const Row& w) {
+  std::cout << fmt::format(
+      ".bias = {:.3f}, .ratio = {:.3f}, .left_right = {:.3f}, .variance = {:.3f}, .local = "
+      "{:.4f}, .candidates = {:.3f}\n",
+      w[0], w[1], w[2], w[3], w[4], w[5]);
   for (const Bin& bin : bins)
-    std::cout << fmt::format(
-        "sigma {:.3f} px, {:.2f} % of the pixels, predicted {:.3f}, right {:.3f}\n",
-        std::sqrt(bin.squared_px2 / std::max(bin.right, 1)),
-        100.0 * bin.count / static_cast<double>(samples.size()),
-        bin.probability_sum / std::max(bin.count, 1),
-        static_cast<double>(bin.right) / std::max(bin.count, 1));
+    std::cout << fmt::format("right {:.3f}, sigma {:.2f} px, {} samples\n",
+                             static_cast<double>(bin.right) / std::max(bin.count, 1),
+                             std::sqrt(bin.squared_px2 / std::max(bin.right, 1)), bin.count);
 }
 
 void run(const std::vector<std::string>& folders) {
   std::vector<Sample> samples;
-  for (const std::string& folder : folders) add_samples(folder, samples);
+  for (const std::string& folder : folders) add_pair(folder, samples);
+  const std::size_t of_pairs = samples.size();
+  for (const int levels : {2, 4, 8, 32, 256})
+    for (const double blur_px : {0.0, 0.8, 1.5}) add_noise(levels, blur_px, samples);
   const Row weights = fit(samples);
-  std::cout << fmt::format(
-      ".bias = {:.3f}, .ratio = {:.3f}, .left_right = {:.3f}, .variance = {:.3f}\n", weights[0],
-      weights[1], weights[2], weights[3]);
-  print_bins(samples, weights);
+  print(bins_of(std::span(samples).first(of_pairs), weights), weights);
 }
 
 }  // namespace

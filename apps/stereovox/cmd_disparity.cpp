@@ -9,6 +9,7 @@
 #include "stereovox/dataset/calibration.h"
 #include "stereovox/io/disparity_file.h"
 #include "stereovox/io/image_file.h"
+#include "stereovox/io/pfm.h"
 #include "stereovox/pipeline/stage_times.h"
 #include "stereovox/stereo/disparity_picture.h"
 #include "stereovox/stereo/rectification_check.h"
@@ -17,7 +18,7 @@ namespace stereovox {
 namespace {
 
 struct DisparityOptions {
-  std::string left, right, calibration, output, picture;
+  std::string left, right, calibration, output, confidence, picture;
   ConfigOptions config;
 };
 
@@ -45,6 +46,13 @@ RectifiedPair rectified_pair(const DisparityOptions& options, const Rectificatio
   return Rectifier(rig, params).rectify({0, 0, options.left, left, right});
 }
 
+// 0 where there is no disparity.
+void write_confidence(const std::string& path, const DisparityImage& disparity) {
+  if (disparity.confidence.empty())
+    throw UsageError("--confidence: this matcher has none; take matcher.type=census_sgm");
+  write_pfm(path, disparity.confidence);
+}
+
 ExitCode run(const DisparityOptions& options) {
   const PipelineConfig config = options.config.load();
   const RectifiedPair pair = rectified_pair(options, config.rectification);
@@ -55,6 +63,7 @@ ExitCode run(const DisparityOptions& options) {
   Duration duration;
   const DisparityImage disparity =
       timed(duration, [&] { return match(pair, config.matcher, config.thread_count()); });
+  if (!options.confidence.empty()) write_confidence(options.confidence, disparity);
   write_disparity(options.output, disparity);
   if (!options.picture.empty()) write_png(options.picture, draw_disparity(disparity));
   std::cout << fmt::format("{}: {} x {}, {:.1f} % of the pixels have a disparity, {:.1f} ms\n",
@@ -79,6 +88,10 @@ void add_disparity(CLI::App& program, Action& action) {
   options->config.add_to(*command);
   command->add_option("-o,--output", options->output, ".pfm, or .png in KITTI's form (16 bit)")
       ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--confidence", options->confidence,
+                   "probability that each disparity is right, .pfm")
       ->type_name("FILE");
   command->add_option("--picture", options->picture, "the disparities in colour, for people")
       ->type_name("FILE");

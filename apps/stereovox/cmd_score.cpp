@@ -27,6 +27,7 @@ struct TrajectoryOptions : ScoreOptions {
 
 struct DisparityOptions : ScoreOptions {
   std::string mask;
+  bool without_occlusions = false;
 };
 
 template <class Score>
@@ -47,12 +48,11 @@ ExitCode score(const TrajectoryOptions& options) {
 }
 
 ExitCode score(const DisparityOptions& options) {
-  const cv::Mat1b counted = options.mask.empty()
-                                ? cv::Mat1b()
-                                : cv::Mat1b(read_gray_image(options.mask).image.pixels == 255);
-  return show(
-      score_disparity(read_disparity(options.truth), read_disparity(options.estimate), counted),
-      options.json);
+  const DisparityImage truth = read_disparity(options.truth);
+  cv::Mat1b counted;
+  if (!options.mask.empty()) counted = read_gray_image(options.mask).image.pixels == 255;
+  if (options.without_occlusions) counted = non_occluded(truth);
+  return show(score_disparity(truth, read_disparity(options.estimate), counted), options.json);
 }
 
 template <class Options>
@@ -86,9 +86,14 @@ void add_score(CLI::App& program, Action& action) {
       ->type_name("M,M,...");
   const auto disparity = add_kind<DisparityOptions>(
       *command, "disparity", "two PFM or KITTI PNG files: bad-N, D1, MAE, density", action);
+  CLI::Option* const mask =
+      command->get_subcommand("disparity")
+          ->add_option("--mask", disparity->mask, "image, white where pixels count")
+          ->type_name("FILE");
   command->get_subcommand("disparity")
-      ->add_option("--mask", disparity->mask, "image, white where pixels count")
-      ->type_name("FILE");
+      ->add_flag("--without-occlusions", disparity->without_occlusions,
+                 "count what the true disparities show to both cameras only")
+      ->excludes(mask);
   add_score_map(*command, action);
   add_score_voxels(*command, action);
 }

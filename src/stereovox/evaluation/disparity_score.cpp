@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "stereovox/core/error.h"
 
@@ -57,6 +59,21 @@ BadPixels shares(const Sums& sums, int extra, int total) {
   return result;
 }
 
+constexpr int kNeighbours = 3;
+
+// The largest disparity that comes to each right pixel of row v, or 0. One more pixel at each end,
+// so that element u is the pixel before right pixel u.
+std::vector<float> nearest_in_right_row(const cv::Mat1f& left_px, int v) {
+  std::vector<float> nearest_px(left_px.cols + 2);
+  for (int u = 0; u < left_px.cols; ++u) {
+    const float d_px = left_px(v, u);
+    if (!is_disparity(d_px) || d_px > static_cast<float>(u)) continue;
+    float& there = nearest_px[static_cast<std::size_t>(u - std::lround(d_px) + 1)];
+    there = std::max(there, d_px);
+  }
+  return nearest_px;
+}
+
 }  // namespace
 
 DisparityScore score_disparity(const DisparityImage& truth, const DisparityImage& estimate,
@@ -91,6 +108,22 @@ cv::Mat1b non_occluded(const DisparityImage& truth_left, const DisparityImage& t
       const float there_px = right_px(v, u - static_cast<int>(std::lround(d_px)));
       seen(v, u) = is_disparity(there_px) && std::abs(there_px - d_px) <= tolerance_px ? 255 : 0;
     }
+  return seen;
+}
+
+cv::Mat1b non_occluded(const DisparityImage& truth_left, double tolerance_px) {
+  const cv::Mat1f& left_px = truth_left.disparity_px;
+  cv::Mat1b seen(left_px.size(), 0);
+  for (int v = 0; v < left_px.rows; ++v) {
+    const std::vector<float> nearest_px = nearest_in_right_row(left_px, v);
+    for (int u = 0; u < left_px.cols; ++u) {
+      const float d_px = left_px(v, u);
+      if (!is_disparity(d_px) || d_px > static_cast<float>(u)) continue;
+      const auto there = nearest_px.begin() + (u - static_cast<int>(std::lround(d_px)));
+      const float nearest = *std::max_element(there, there + kNeighbours);
+      seen(v, u) = nearest - d_px <= tolerance_px ? 255 : 0;
+    }
+  }
   return seen;
 }
 

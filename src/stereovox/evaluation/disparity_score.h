@@ -37,4 +37,9 @@ DisparityScore score_disparity(const DisparityImage& truth, const DisparityImage
 cv::Mat1b non_occluded(const DisparityImage& truth_left, const DisparityImage& truth_right,
                        double tolerance_px = 1.0);
 
+// The same from the truth of the left image alone: a pixel is hidden where another one of its row
+// comes to the same place of the right image, within a pixel, and is nearer by more than the
+// tolerance. What has no truth hides nothing.
+cv::Mat1b non_occluded(const DisparityImage& truth_left, double tolerance_px = 1.0);
+
 }  // namespace stereovox

@@ -103,5 +103,16 @@ TEST(DisparityScore, PixelsThatTheRightCameraDoesNotSeeAreOccluded) {
   }
 }
 
+// From the left image alone the bar's neighbours count as hidden, too: within a pixel of it.
+TEST(DisparityScore, TheLeftTruthAloneTellsWhatIsHidden) {
+  DisparityImage left = row_of(std::vector<float>(30, 2.0F));
+  left.disparity_px.colRange(20, 25).setTo(10.0F);
+  left.disparity_px(0, 28) = 0.0F;
+  const cv::Mat1b seen = non_occluded(left);
+  std::string drawn;
+  for (int u = 0; u < seen.cols; ++u) drawn += seen(0, u) == 255 ? '.' : '#';
+  EXPECT_EQ(drawn, "##.........#######..........#.");
+}
+
 }  // namespace
 }  // namespace stereovox

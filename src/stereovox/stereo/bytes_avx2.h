@@ -36,7 +36,7 @@ struct BytesAvx2 {
   // 255 where a >= b.
   static V is_at_least(V a, V b) { return _mm256_cmpeq_epi8(_mm256_max_epu8(a, b), a); }
   // Bit i says whether byte i is the same.
-  static std::uint32_t equal_bits(V a, V b) {
+  static std::uint64_t equal_bits(V a, V b) {
     return static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(a, b)));
   }
 

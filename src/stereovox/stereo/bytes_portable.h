@@ -35,10 +35,10 @@ struct BytesPortable {
   static V differ(V a, V b) { return a ^ b; }
 
   static V is_at_least(V a, V b) { return V(a >= b); }
-  static std::uint32_t equal_bits(V a, V b) {
+  static std::uint64_t equal_bits(V a, V b) {
     const V is_equal = V(a == b);
-    std::uint32_t bits = 0;
-    for (int i = 0; i < kSize; ++i) bits |= (is_equal[i] & 1U) << i;
+    std::uint64_t bits = 0;
+    for (int i = 0; i < kSize; ++i) bits |= (is_equal[i] & 1ULL) << i;
     return bits;
   }
 

@@ -11,8 +11,9 @@ const CensusKernels& portable_census_kernels() {
 }
 
 const CensusKernels& fastest_census_kernels() {
-  const CensusKernels* const avx2 = avx2_census_kernels();
-  return avx2 != nullptr ? *avx2 : portable_census_kernels();
+  for (const CensusKernels* const kernels : {avx512_census_kernels(), avx2_census_kernels()})
+    if (kernels != nullptr) return *kernels;
+  return portable_census_kernels();
 }
 
 }  // namespace stereovox

@@ -1,6 +1,6 @@
-// The inner loops of the census matchers, compiled once for AVX2 and once for any machine; both
-// give the same bytes. Plain pointers throughout, so that the code for AVX2 shares nothing that a
-// linker could mistake for code for every machine.
+// The inner loops of the census matchers, compiled for AVX2, for AVX-512 and for any machine;
+// all give the same bytes. Plain pointers throughout, so that the code for one machine shares
+// nothing that a linker could mistake for code for every machine.
 //
 // A candidate i = 0 ... candidates - 1 of left pixel x stands for disparity max_disparity - i: then
 // the right pixels of consecutive candidates lie side by side.
@@ -16,11 +16,14 @@ inline constexpr int kSlopePlane = kCensusPlanes, kPlanes = kCensusPlanes + 1;
 inline constexpr int kCensusHalfWidth_px = 4, kCensusHalfHeight_px = 3;
 inline constexpr int kCandidateStep = 32, kMaxCandidates = 256;
 inline constexpr int kCensusBits = 31;
-// The change of brightness along the row counts up to this, and weighs this much, against census
-// bits; their mean is the cost. Census alone confuses fine structures.
-inline constexpr int kMaxSlope_gray = 40, kSlopeWeight = 2, kMaxSlopeCost = 31;
+// The change of brightness along the row counts up to kMaxSlope_gray; how much it differs weighs
+// this much, up to kMaxSlopeCost, against census bits, and their mean is the cost. Census alone
+// confuses fine structures.
+inline constexpr int kMaxSlope_gray = 40, kSlopeWeight = 4, kMaxSlopeCost = 20;
+inline constexpr int kLocalWidth_px = 5;
+inline constexpr std::uint8_t kNoLocalCost = 255;
 // Rows of bytes may be read and written this far beyond their end.
-inline constexpr int kRowSlack = 32;
+inline constexpr int kRowSlack = 64;
 // Bytes between the candidates of two pixels in a row of path costs: a wall that no step crosses.
 inline constexpr int kPathWall = 32;
 
@@ -34,6 +37,7 @@ struct PixelRow {
 // One row of images that semi-global aggregation has reached, and what it keeps from row to row.
 struct SweepRow {
   int width_px = 0;
+  PixelRow left, right;  // candidate i of left pixel x is right pixel x + i
   std::uint8_t small_penalty = 0;
   // Of a disparity jump between each pixel and the one before it, and the ones above, above to the
   // left, above to the right.
@@ -44,41 +48,42 @@ struct SweepRow {
   // path comes from lies in the same slot, and is overwritten where it is read.
   std::array<std::uint8_t*, 3> paths_above = {};
   std::array<int, 3> first_slot = {};
-  // Differences, width x candidates, of the row above, this one and the one below.
-  std::array<const std::uint8_t*, 3> differences = {};
-  std::uint8_t* cost = nullptr;  // width x candidates: the mean of these rows
+  std::uint8_t* cost = nullptr;  // width x candidates
   std::uint8_t* sum = nullptr;   // width x candidates: of path costs, at most 255
 };
 
-// What the best candidate of each pixel of a row is, the first one of equals.
+// What the best candidate of each pixel of a row is, the first one of equals. The paths from above
+// drag disparities along where a surface leans towards the camera, as floors do. So the winner is
+// chosen anew among the one of the paths and its two neighbours, by the local cost alone: summed
+// over kLocalWidth_px pixels of the row.
 struct WinnerPointers {
   std::uint8_t* candidate = nullptr;
-  std::uint8_t* cost = nullptr;    // its sum of path costs
+  std::uint8_t* cost = nullptr;    // the smallest sum of path costs
   std::uint8_t* second = nullptr;  // the smallest sum of candidates that are not its neighbours
+  // Local costs of the winner and its neighbours; kNoLocalCost where there is no such candidate.
+  std::uint8_t* local_before = nullptr;
+  std::uint8_t* local = nullptr;
+  std::uint8_t* local_after = nullptr;
 };
 
 // Functions that depend on the number of candidates are listed by candidates / kCandidateStep - 1.
 struct CensusKernels {
   static constexpr int kSizes = kMaxCandidates / kCandidateStep;
   using Census = void (*)(const std::uint8_t* const* rows, int width_px, const PixelRow& out);
-  using Differences = void (*)(int width_px, const PixelRow& left, const PixelRow& right,
-                               std::uint8_t* out);
-  using Forward = void (*)(const SweepRow& row);
-  using Backward = void (*)(const SweepRow& row, const WinnerPointers& out);
+  using Down = void (*)(const SweepRow& row);
+  using Along = void (*)(const SweepRow& row, const WinnerPointers& out);
 
   // `rows` are the 7 rows about this one, each with 4 more pixels on either side.
   Census census = nullptr;
-  // Differences of pixels, smoothed along the row; candidate i of left pixel x is right pixel x +
-  // i.
-  std::array<Differences, kSizes> differences = {};
-  // The costs and the four paths from the left and from above: fills cost and sum.
-  std::array<Forward, kSizes> forward = {};
-  // The path from the right, then the winners.
-  std::array<Backward, kSizes> backward = {};
+  // The costs and the three paths from above: fills cost and sum.
+  std::array<Down, kSizes> down = {};
+  // The paths from the left and from the right, then the winners.
+  std::array<Along, kSizes> along = {};
 };
 
 const CensusKernels& portable_census_kernels();
-const CensusKernels* avx2_census_kernels();  // nullptr on a machine without AVX2
+const CensusKernels* avx2_census_kernels();    // nullptr on a machine without AVX2
+const CensusKernels* avx512_census_kernels();  // nullptr on a machine without AVX-512 BW
 const CensusKernels& fastest_census_kernels();
 
 }  // namespace stereovox

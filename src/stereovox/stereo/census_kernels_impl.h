@@ -23,7 +23,7 @@ inline constexpr int kLevelSlope = 128;
 // Change of brightness along the row, smoothed across it, as kLevelSlope plus what is left of it
 // after clipping.
 template <class S>
-typename S::V slope(const std::uint8_t* const* rows, int x) {
+[[gnu::always_inline]] inline typename S::V slope(const std::uint8_t* const* rows, int x) {
   using V = typename S::V;
   const auto smooth = [&](int column) {
     const V above = S::load(rows[kCensusHalfHeight_px - 1] + column);
@@ -62,7 +62,8 @@ void census_row(const std::uint8_t* const* rows, int width_px, const PixelRow& o
 // Hamming distance of two census words that lie in four planes of bytes. Carry-save adders bring
 // the four planes to one of weight 1 and two of weight 2 before the ones are counted.
 template <class S>
-typename S::V hamming(const typename S::V (&left)[kPlanes], const PixelRow& right, int at) {
+[[gnu::always_inline]] inline typename S::V hamming(const typename S::V (&left)[kPlanes],
+                                                    const PixelRow& right, int at) {
   using V = typename S::V;
   const V a = S::differ(left[0], S::load(right.planes[0] + at));
   const V b = S::differ(left[1], S::load(right.planes[1] + at));
@@ -76,17 +77,20 @@ typename S::V hamming(const typename S::V (&left)[kPlanes], const PixelRow& righ
 }
 
 template <class S>
-typename S::V slope_cost(typename S::V left, const PixelRow& right, int at) {
+[[gnu::always_inline]] inline typename S::V slope_cost(typename S::V left, const PixelRow& right,
+                                                       int at) {
   using V = typename S::V;
   const V there = S::load(right.planes[kSlopePlane] + at);
   const V difference =
       S::either(S::subtract_saturated(left, there), S::subtract_saturated(there, left));
-  static_assert(kSlopeWeight == 2);
-  return S::min(S::add_saturated(difference, difference), S::spread(kMaxSlopeCost));
+  V weighted = difference;
+  for (int i = 1; i < kSlopeWeight; ++i) weighted = S::add_saturated(weighted, difference);
+  return S::min(weighted, S::spread(kMaxSlopeCost));
 }
 
 template <class S>
-typename S::V difference(const typename S::V (&left)[kPlanes], const PixelRow& right, int at) {
+[[gnu::always_inline]] inline typename S::V matching_cost(const typename S::V (&left)[kPlanes],
+                                                          const PixelRow& right, int at) {
   return S::mean(hamming<S>(left, right, at), slope_cost<S>(left[kSlopePlane], right, at));
 }
 
@@ -107,8 +111,9 @@ PathState<S, N> start_of_path() {
 
 // The next pixel of a path that is kept in registers.
 template <class S, int N>
-void step_along_row(const typename S::V (&cost)[N], typename S::V small, typename S::V large,
-                    PathState<S, N>& path) {
+[[gnu::always_inline]] inline void step_along_row(const typename S::V (&cost)[N],
+                                                  typename S::V small, typename S::V large,
+                                                  PathState<S, N>& path) {
   using V = typename S::V;
   const V wall = S::spread(kMaxByte);
   const V jump = S::add_saturated(path.smallest, large);
@@ -129,8 +134,9 @@ void step_along_row(const typename S::V (&cost)[N], typename S::V small, typenam
 // The next pixel of a path from above, in place: `kept` holds the candidates of the pixel that it
 // comes from, above their minimum, between walls. Adds to the sums.
 template <class S, int N>
-void step_from_above(const typename S::V (&cost)[N], typename S::V small, typename S::V large,
-                     std::uint8_t* kept, typename S::V (&sum)[N]) {
+[[gnu::always_inline]] inline void step_from_above(const typename S::V (&cost)[N],
+                                                   typename S::V small, typename S::V large,
+                                                   std::uint8_t* kept, typename S::V (&sum)[N]) {
   using V = typename S::V;
   V next[N];
   V all = S::spread(kMaxByte);
@@ -146,44 +152,19 @@ void step_from_above(const typename S::V (&cost)[N], typename S::V small, typena
 }
 
 template <class S, int kCandidates>
-void differences_row(int width_px, const PixelRow& left, const PixelRow& right, std::uint8_t* out) {
-  constexpr int N = kCandidates / S::kSize;
-  using V = typename S::V;
-  V before[N], here[N];
-  for (int x = 0; x <= width_px; ++x) {
-    V words[kPlanes], after[N];
-    const int column = x < width_px ? x : width_px - 1;
-    for (int p = 0; p < kPlanes; ++p) words[p] = S::spread(left.planes[p][column]);
-    for (int n = 0; n < N; ++n) {
-      after[n] = difference<S>(words, right, column + n * S::kSize);
-      if (x == 0) before[n] = here[n] = after[n];
-      if (x > 0)
-        S::store(out + (x - 1) * kCandidates + n * S::kSize,
-                 S::mean(here[n], S::mean(before[n], after[n])));
-      before[n] = here[n];
-      here[n] = after[n];
-    }
-  }
-}
-
-template <class S, int kCandidates>
-void sweep_forward(const SweepRow& row) {
+void sweep_down(const SweepRow& row) {
   constexpr int N = kCandidates / S::kSize;
   using V = typename S::V;
   const V small = S::spread(row.small_penalty);
-  PathState<S, N> from_left = start_of_path<S, N>();
   std::array<int, 3> slot = row.first_slot;
   for (int x = 0; x < row.width_px; ++x) {
-    V cost[N], sum[N];
+    V words[kPlanes], cost[N], sum[N];
+    for (int p = 0; p < kPlanes; ++p) words[p] = S::spread(row.left.planes[p][x]);
     for (int n = 0; n < N; ++n) {
-      const int at = x * kCandidates + n * S::kSize;
-      cost[n] =
-          S::mean(S::load(row.differences[1] + at),
-                  S::mean(S::load(row.differences[0] + at), S::load(row.differences[2] + at)));
-      S::store(row.cost + at, cost[n]);
+      cost[n] = matching_cost<S>(words, row.right, x + n * S::kSize);
+      S::store(row.cost + x * kCandidates + n * S::kSize, cost[n]);
+      sum[n] = S::spread(0);
     }
-    step_along_row<S, N>(cost, small, S::spread(row.penalty_beside[x]), from_left);
-    for (int n = 0; n < N; ++n) sum[n] = from_left.cost[n];
     for (int k = 0; k < 3; ++k) {
       std::uint8_t* const kept =
           row.paths_above[k] + slot[k] * (kCandidates + kPathWall) + kPathWall;
@@ -196,17 +177,65 @@ void sweep_forward(const SweepRow& row) {
 }
 
 template <class S, int N>
-int first_equal(const typename S::V (&sum)[N], typename S::V smallest) {
+[[gnu::always_inline]] inline int first_equal(const typename S::V (&sum)[N],
+                                              typename S::V smallest) {
   int found = 0;
   for (int n = N - 1; n >= 0; --n) {
-    const std::uint32_t bits = S::equal_bits(sum[n], smallest);
-    found = bits != 0 ? n * S::kSize + __builtin_ctz(bits) : found;
+    const std::uint64_t bits = S::equal_bits(sum[n], smallest);
+    found = bits != 0 ? n * S::kSize + __builtin_ctzll(bits) : found;
   }
   return found;
 }
 
+// Local costs of all candidates about pixel x, summed over kLocalWidth_px pixels of the row.
+template <class S, int kCandidates>
+class LocalSums {
+ public:
+  LocalSums(const SweepRow& row, int x) : row_(row) {
+    for (int n = 0; n < N; ++n) {
+      sum_[n] = S::spread(0);
+      for (int dx = -kHalf; dx <= kHalf; ++dx) sum_[n] = S::add(sum_[n], cost(x + dx, n));
+    }
+    for (std::uint8_t* const wall : {bytes_, bytes_ + kWall + kCandidates})
+      for (int i = 0; i < kWall; ++i) wall[i] = kNoLocalCost;
+  }
+
+  // From the pixel before (direction 1) or after it (-1) to pixel x.
+  void move_to(int x, int direction) {
+    const int out = x - direction * (kHalf + 1), in = x + direction * kHalf;
+    for (int n = 0; n < N; ++n) sum_[n] = S::add(S::subtract(sum_[n], cost(out, n)), cost(in, n));
+  }
+
+  // Moves the winner at x to the best of it and its two neighbours; of equals to itself, then to
+  // the one before. Without branches, which nobody could predict.
+  void choose(int x, const WinnerPointers& out) {
+    for (int n = 0; n < N; ++n) S::store(bytes_ + kWall + n * S::kSize, sum_[n]);
+    const std::uint8_t* const about = bytes_ + kWall + out.candidate[x];
+    const int before = about[-1], here = about[0], after = about[1];
+    const int is_before = before < here, is_after = after < (is_before != 0 ? before : here);
+    const int step = is_after - (is_before & ~is_after);
+    out.candidate[x] = static_cast<std::uint8_t>(out.candidate[x] + step);
+    out.local_before[x] = about[step - 1];
+    out.local[x] = about[step];
+    out.local_after[x] = about[step + 1];
+  }
+
+ private:
+  static constexpr int N = kCandidates / S::kSize, kHalf = kLocalWidth_px / 2, kWall = 32;
+
+  typename S::V cost(int x, int n) const {
+    const int last = row_.width_px - 1, column = x < 0 ? 0 : (x > last ? last : x);
+    return S::load(row_.cost + column * kCandidates + n * S::kSize);
+  }
+
+  const SweepRow& row_;
+  typename S::V sum_[N];
+  std::uint8_t bytes_[kWall + kCandidates + kWall];
+};
+
 template <class S, int N>
-void find_winner(const typename S::V (&sum)[N], int x, const WinnerPointers& out) {
+[[gnu::always_inline]] inline void find_winner(const typename S::V (&sum)[N], int x,
+                                               const WinnerPointers& out) {
   using V = typename S::V;
   V all = sum[0];
   for (int n = 1; n < N; ++n) all = S::min(all, sum[n]);
@@ -221,36 +250,81 @@ void find_winner(const typename S::V (&sum)[N], int x, const WinnerPointers& out
   out.second[x] = S::first(S::min_of_all(others));
 }
 
+// One of the two paths along the row. It comes to each pixel from the one at x - direction.
 template <class S, int kCandidates>
-void sweep_backward(const SweepRow& row, const WinnerPointers& out) {
-  constexpr int N = kCandidates / S::kSize;
-  using V = typename S::V;
-  const V small = S::spread(row.small_penalty);
-  PathState<S, N> from_right = start_of_path<S, N>();
-  for (int x = row.width_px - 1; x >= 0; --x) {
-    V cost[N], sum[N];
-    for (int n = 0; n < N; ++n) cost[n] = S::load(row.cost + x * kCandidates + n * S::kSize);
-    const std::uint8_t penalty = row.penalty_beside[x + 1];
-    step_along_row<S, N>(cost, small, S::spread(penalty), from_right);
+class PathAlong {
+ public:
+  PathAlong(const SweepRow& row, int direction)
+      : row_(row),
+        direction_(direction),
+        small_(S::spread(row.small_penalty)),
+        path_(start_of_path<S, N>()) {}
+
+  // Goes on to pixel x and adds to its sums.
+  void pass(int x) {
+    std::uint8_t* const sums = step(x);
     for (int n = 0; n < N; ++n)
-      sum[n] =
-          S::add_saturated(S::load(row.sum + x * kCandidates + n * S::kSize), from_right.cost[n]);
+      S::store(sums + n * S::kSize, S::add_saturated(S::load(sums + n * S::kSize), path_.cost[n]));
+  }
+
+  // Goes on to pixel x, whose sums want only this path, and finds its winner.
+  void finish(int x, LocalSums<S, kCandidates>& local, const WinnerPointers& out) {
+    const std::uint8_t* const sums = step(x);
+    typename S::V sum[N];
+    for (int n = 0; n < N; ++n)
+      sum[n] = S::add_saturated(S::load(sums + n * S::kSize), path_.cost[n]);
     find_winner<S, N>(sum, x, out);
+    local.move_to(x, direction_);
+    local.choose(x, out);
+  }
+
+ private:
+  static constexpr int N = kCandidates / S::kSize;
+
+  std::uint8_t* step(int x) {
+    typename S::V cost[N];
+    for (int n = 0; n < N; ++n) cost[n] = S::load(row_.cost + x * kCandidates + n * S::kSize);
+    const std::uint8_t penalty = row_.penalty_beside[direction_ > 0 ? x : x + 1];
+    step_along_row<S, N>(cost, small_, S::spread(penalty), path_);
+    return row_.sum + x * kCandidates;
+  }
+
+  const SweepRow& row_;
+  const int direction_;
+  const typename S::V small_;
+  PathState<S, N> path_;
+};
+
+// Both paths go at once, because each of them alone waits for its last minimum most of the time.
+// They meet in the middle; from there on each one comes to pixels that the other has passed.
+template <class S, int kCandidates>
+void sweep_along(const SweepRow& row, const WinnerPointers& out) {
+  PathAlong<S, kCandidates> rightwards(row, 1), leftwards(row, -1);
+  int right = 0, left = row.width_px - 1;
+  for (; right < left; ++right, --left) {
+    rightwards.pass(right);
+    leftwards.pass(left);
+  }
+  const bool meet_at_a_pixel = right == left;
+  if (meet_at_a_pixel) rightwards.pass(right++);
+  LocalSums<S, kCandidates> local_right(row, right - 1), local_left(row, left + 1);
+  if (meet_at_a_pixel) leftwards.finish(left--, local_left, out);
+  for (; left >= 0; ++right, --left) {
+    rightwards.finish(right, local_right, out);
+    leftwards.finish(left, local_left, out);
   }
 }
 
-template <class S>
+// Even is for numbers of candidates that are even multiples of kCandidateStep, Odd for the others.
+template <class Odd, class Even = Odd>
 constexpr CensusKernels make_census_kernels() {
-  return {.census = census_row<S>,
-          .differences = {differences_row<S, 32>, differences_row<S, 64>, differences_row<S, 96>,
-                          differences_row<S, 128>, differences_row<S, 160>, differences_row<S, 192>,
-                          differences_row<S, 224>, differences_row<S, 256>},
-          .forward = {sweep_forward<S, 32>, sweep_forward<S, 64>, sweep_forward<S, 96>,
-                      sweep_forward<S, 128>, sweep_forward<S, 160>, sweep_forward<S, 192>,
-                      sweep_forward<S, 224>, sweep_forward<S, 256>},
-          .backward = {sweep_backward<S, 32>, sweep_backward<S, 64>, sweep_backward<S, 96>,
-                       sweep_backward<S, 128>, sweep_backward<S, 160>, sweep_backward<S, 192>,
-                       sweep_backward<S, 224>, sweep_backward<S, 256>}};
+  return {.census = census_row<Even>,
+          .down = {sweep_down<Odd, 32>, sweep_down<Even, 64>, sweep_down<Odd, 96>,
+                   sweep_down<Even, 128>, sweep_down<Odd, 160>, sweep_down<Even, 192>,
+                   sweep_down<Odd, 224>, sweep_down<Even, 256>},
+          .along = {sweep_along<Odd, 32>, sweep_along<Even, 64>, sweep_along<Odd, 96>,
+                    sweep_along<Even, 128>, sweep_along<Odd, 160>, sweep_along<Even, 192>,
+                    sweep_along<Odd, 224>, sweep_along<Even, 256>}};
 }
 
 }  // namespace

@@ -10,10 +10,11 @@ struct CensusSearch {
   int min_disparity_px = 0;
   int disparity_range_px = 64;
   int uniqueness_ratio_percent = 2;
-  int left_right_tolerance_px = 1;
+  int left_right_tolerance_px = 3;
   int speckle_size_px = 100;
   int speckle_range_px = 2;
-  double min_confidence = 0.5;
+  double min_confidence = 0.3;
+  double island_confidence = 0.96;
 
   int candidates() const {
     return (disparity_range_px + kCandidateStep - 1) / kCandidateStep * kCandidateStep;
@@ -29,10 +30,13 @@ struct CensusSearch {
          "the best cost must undercut the second best by this much");
     list("left_right_tolerance_px", left_right_tolerance_px, {0, 64},
          "left and right disparities may differ by this much");
-    list("speckle_size_px", speckle_size_px, {0, 100000}, "smaller islands are removed");
+    list("speckle_size_px", speckle_size_px, {0, 100000},
+         "islands of fewer pixels with island_confidence are removed");
     list("speckle_range_px", speckle_range_px, {1, 64}, "largest disparity step inside an island");
     list("min_confidence", min_confidence, {0, 1},
          "disparities that are less probably within 2 px are removed");
+    list("island_confidence", island_confidence, {0, 1},
+         "what the pixels of an island are counted by: noise gives islands, but no sure ones");
   }
 };
 

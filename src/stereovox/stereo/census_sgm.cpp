@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "stereovox/core/error.h"
 #include "stereovox/core/parallel.h"
 #include "stereovox/stereo/census_sweep.h"
 #include "stereovox/stereo/judge_matches.h"
+#include "stereovox/stereo/smooth_disparities.h"
 
 namespace stereovox {
 namespace {
@@ -16,16 +16,18 @@ namespace {
 // paths. Their number follows from the image alone, never from the threads.
 constexpr int kStripeHeight_px = 120;
 constexpr int kWarmUpRows = 12;
-constexpr int kMedian_px = 3;  // side of the window that single wrong disparities vanish in
 
 // Fitted by apps/fit_confidence to cones, motorcycle and six frames of a rendered room. The last
 // three bins were not reached.
 constexpr ConfidenceModel kModel = {
-    .bias = 1.838,
-    .ratio = 1.357,
-    .left_right = 0.704,
-    .variance = 0.598,
-    .sigma_px = {0.94, 0.93, 0.91, 0.78, 0.76, 0.79, 0.52, 0.34, 0.23, 0.23, 0.23, 0.23}};
+    .bias = 2.685,
+    .ratio = 1.778,
+    .left_right = 0.294,
+    .variance = 0.502,
+    .local = 0.0378,
+    .candidates = 0.315,
+    .right = {0.121, 0.246, 0.334, 0.434, 0.547, 0.792, 0.948, 0.983, 0.988, 0.990, 0.994, 0.994},
+    .sigma_px = {0.78, 0.71, 0.69, 0.70, 0.71, 0.64, 0.47, 0.36, 0.28, 0.22, 0.19, 0.19}};
 
 SweepParams sweep_params(const CensusSgmParams& p) {
   if (p.smoothness_large <= p.smoothness_small)
@@ -49,9 +51,10 @@ void sweep_stripe(const CensusPair& pair, const SweepParams& params, int first_r
   CensusSweep sweep(pair, params, warm_up_row, fastest_census_kernels());
   for (int v = warm_up_row; v < first_row; ++v) sweep.skip_row();
   WinnerRow winners(pair.width_px);
+  FeatureRows rows(pair.width_px, params.min_disparity_px, params.max_disparity_px());
   for (int v = first_row; v < end_row; ++v) {
     sweep.next_row(winners);
-    fill_feature_row(winners, params.max_disparity_px(), v, features);
+    rows.fill(winners, v, features);
   }
 }
 
@@ -67,8 +70,7 @@ MatchFeatures match_features(const RectifiedPair& pair, const CensusSgmParams& p
   parallel_for(0, stripes, threads, [&](int i) {
     sweep_stripe(padded, sweep, height * i / stripes, height * (i + 1) / stripes, features);
   });
-  cv::medianBlur(features.disparity_px, features.disparity_px, kMedian_px);
-  parallel_for(0, height, threads, [&](int v) { fill_variance_row(features, v); });
+  smooth_disparities(features.disparity, threads);
   return features;
 }
 

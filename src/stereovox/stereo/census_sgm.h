@@ -13,15 +13,15 @@ struct CensusSgmParams {
   static constexpr const char* kName = "census_sgm";
 
   CensusSearch search;
-  int smoothness_small = 6;
-  int smoothness_large = 36;
-  double edge_contrast_gray = 10.0;
+  int smoothness_small = 18;
+  int smoothness_large = 200;
+  double edge_contrast_gray = 3.0;
 
   void describe(ParameterList& list) {
     search.describe(list);
     list("smoothness_small", smoothness_small, {0, 100},
          "penalty for a disparity step of one pixel (P1), in census bits");
-    list("smoothness_large", smoothness_large, {1, 200},
+    list("smoothness_large", smoothness_large, {1, 220},
          "penalty for a larger disparity step where the brightness is even (P2)");
     list("edge_contrast_gray", edge_contrast_gray, {1, 10000},
          "brightness step at which the penalty for a larger disparity step is halved");

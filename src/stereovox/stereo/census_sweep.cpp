@@ -42,19 +42,8 @@ PixelRow plane_pointers(cv::Mat1b& planes, int before, int width_px, int after) 
   return row;
 }
 
-// Costs of eight candidates side by side, one a byte.
-using EightCosts = std::uint64_t;
-constexpr int kEight = sizeof(EightCosts);
 constexpr int kMaxCost = std::max(kCensusBits, kMaxSlopeCost);
-static_assert(kLocalWidth_px * kMaxCost < kNoLocalCost, "a sum must not carry into the next byte");
-
-// `local` holds the costs of candidates -2 ... 2 about the winner. Returns the step to the best of
-// the middle three; of equals the winner, then the one before.
-int best_local_step(const std::uint8_t* local) {
-  int step = local[1] < local[2] ? -1 : 0;
-  if (local[3] < local[2 + step]) step = 1;
-  return step;
-}
+static_assert(kLocalWidth_px * kMaxCost < kNoLocalCost, "local sums must fit a byte");
 
 }  // namespace
 
@@ -66,7 +55,10 @@ WinnerRow::WinnerRow(int width_px)
       local(width_px),
       local_after(width_px) {}
 
-WinnerPointers WinnerRow::pointers() { return {candidate.data(), cost.data(), second.data()}; }
+WinnerPointers WinnerRow::pointers() {
+  return {candidate.data(),    cost.data(),  second.data(),
+          local_before.data(), local.data(), local_after.data()};
+}
 
 CensusPair pad_for_census(const RectifiedPair& pair) {
   return {padded(pair.left.pixels), padded(pair.right.pixels), pair.left.width(),
@@ -93,7 +85,6 @@ CensusSweep::CensusSweep(const CensusPair& pair, const SweepParams& params, int 
   row_.cost = cost_.data;
   row_.sum = sum_.data;
   row_.penalty_beside = penalties_.data;
-  for (cv::Mat1b& row : differences_) row = bytes(width * candidates);
   for (int k = 0; k < 3; ++k) {
     row_.penalty_above[k] = penalties_.data + (k + 1) * (width + 1);
     paths_above_[k] = bytes(width * (candidates + kPathWall) + kPathWall);
@@ -102,49 +93,42 @@ CensusSweep::CensusSweep(const CensusPair& pair, const SweepParams& params, int 
     for (int x = 0; x < width; ++x)
       std::memset(row_.paths_above[k] + x * (candidates + kPathWall) + kPathWall, 0, candidates);
   }
-  for (const int y : {first_row - 1, first_row}) read_costs(y);
 }
 
 void CensusSweep::skip_row() {
   enter_row();
-  kernels_.forward[size_index_](row_);
+  kernels_.down[size_index_](row_);
   ++y_;
 }
 
 void CensusSweep::next_row(WinnerRow& found) {
   enter_row();
-  kernels_.forward[size_index_](row_);
-  kernels_.backward[size_index_](row_, found.pointers());
-  choose_locally(found);
+  kernels_.down[size_index_](row_);
+  kernels_.along[size_index_](row_, found.pointers());
   ++y_;
 }
 
 void CensusSweep::enter_row() {
-  read_costs(y_ + 1);
-  for (int i = 0; i < 3; ++i) row_.differences[i] = differences_of_row(y_ - 1 + i);
+  read_pixels();
   read_penalties();
   const int width = row_.width_px, turn = y_ % width;
   row_.first_slot = {0, (width - turn) % width, turn};
   clear_entries();
 }
 
-std::uint8_t* CensusSweep::differences_of_row(int y) { return differences_[(y + 3) % 3].data; }
-
-// Rows beyond the image repeat the last one.
-void CensusSweep::read_costs(int y) {
-  const int width = row_.width_px, row_in_image = std::clamp(y, 0, pair_.height_px - 1);
+void CensusSweep::read_pixels() {
+  const int width = row_.width_px;
   const int before = std::max(0, params_.max_disparity_px());
   const int after = std::max(0, -params_.min_disparity_px);
-  const PixelRow left = plane_pointers(left_census_, 0, width, 0);
-  PixelRow right = plane_pointers(right_census_, before, width, after);
-  census_of_row(kernels_, pair_.left, row_in_image, width, left);
-  census_of_row(kernels_, pair_.right, row_in_image, width, right);
-  for (std::uint8_t*& plane : right.planes) {
+  row_.left = plane_pointers(left_census_, 0, width, 0);
+  row_.right = plane_pointers(right_census_, before, width, after);
+  census_of_row(kernels_, pair_.left, y_, width, row_.left);
+  census_of_row(kernels_, pair_.right, y_, width, row_.right);
+  for (std::uint8_t*& plane : row_.right.planes) {
     std::memset(plane - before, plane[0], before);
     std::memset(plane + width, plane[width - 1], after + kRowSlack);
     plane -= params_.max_disparity_px();
   }
-  kernels_.differences[size_index_](width, left, right, differences_of_row(y));
 }
 
 void CensusSweep::read_penalties() {
@@ -159,30 +143,6 @@ void CensusSweep::read_penalties() {
   fill(1, above);
   fill(2, above - 1);
   fill(3, above + 1);
-}
-
-void CensusSweep::choose_locally(WinnerRow& found) const {
-  constexpr int kReach = 2;
-  const int width = row_.width_px, candidates = params_.candidates;
-  for (int x = 0; x < width; ++x) {
-    const int first = std::clamp(found.candidate[x] - kReach, 0, candidates - kEight);
-    EightCosts sum = 0;
-    for (int dx = -kLocalWidth_px / 2; dx <= kLocalWidth_px / 2; ++dx) {
-      EightCosts costs = 0;
-      const int column = std::clamp(x + dx, 0, width - 1);
-      std::memcpy(&costs, row_.cost + column * candidates + first, kEight);
-      sum += costs;
-    }
-    std::array<std::uint8_t, kReach + kEight + kReach> local;
-    local.fill(kNoLocalCost);
-    std::memcpy(local.data() + kReach, &sum, kEight);
-    const std::uint8_t* const about = local.data() + found.candidate[x] - first;
-    const int step = best_local_step(about);
-    found.candidate[x] = static_cast<std::uint8_t>(found.candidate[x] + step);
-    found.local_before[x] = about[kReach + step - 1];
-    found.local[x] = about[kReach + step];
-    found.local_after[x] = about[kReach + step + 1];
-  }
 }
 
 // Nothing lies before the first pixel of the path from above left, or of that from above right.

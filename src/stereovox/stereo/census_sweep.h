@@ -14,9 +14,6 @@
 
 namespace stereovox {
 
-inline constexpr int kLocalWidth_px = 5;
-inline constexpr std::uint8_t kNoLocalCost = 255;
-
 struct SweepParams {
   int min_disparity_px = 0;
   int candidates = 64;  // a multiple of kCandidateStep, up to kMaxCandidates
@@ -26,14 +23,9 @@ struct SweepParams {
   int max_disparity_px() const { return min_disparity_px + candidates - 1; }
 };
 
-// What a matcher knows of a row's pixels: see WinnerPointers. The paths from above drag disparities
-// along where a surface leans towards the camera, as floors do. So the winner is chosen anew among
-// the one of the paths and its two neighbours, by the local cost alone: summed over
-// kLocalWidth_px pixels of the row.
+// What a matcher knows of a row's pixels: see WinnerPointers.
 struct WinnerRow {
-  std::vector<std::uint8_t> candidate, cost, second;
-  // Local costs of the winner and its neighbours; kNoLocalCost where there is no such candidate.
-  std::vector<std::uint8_t> local_before, local, local_after;
+  std::vector<std::uint8_t> candidate, cost, second, local_before, local, local_after;
 
   explicit WinnerRow(int width_px);
   WinnerPointers pointers();
@@ -58,11 +50,9 @@ class CensusSweep {
 
  private:
   void enter_row();
-  std::uint8_t* differences_of_row(int y);
-  void read_costs(int y);
+  void read_pixels();
   void read_penalties();
   void clear_entries();
-  void choose_locally(WinnerRow& found) const;
 
   const CensusPair& pair_;
   const SweepParams params_;
@@ -71,7 +61,6 @@ class CensusSweep {
   int y_;
   // Matrices only because they are aligned; each is one row.
   cv::Mat1b left_census_, right_census_, cost_, sum_, penalties_;
-  std::array<cv::Mat1b, 3> differences_;  // of rows y - 1, y, y + 1, row y in y mod 3
   std::array<cv::Mat1b, 3> paths_above_;
   SweepRow row_;
 };

@@ -68,23 +68,11 @@ class Reference {
   }
 
  private:
-  int difference(int x, int y, int candidate) const {
-    x = std::clamp(x, 0, left_.cols - 1);
-    y = std::clamp(y, 0, left_.rows - 1);
+  int matching_cost(int x, int y, int candidate) const {
     const int x_right = x - params_.max_disparity_px() + candidate;
     const int ones = std::popcount(census(left_, x, y) ^ census(right_, x_right, y));
     const int slopes = std::abs(slope(left_, x, y) - slope(right_, x_right, y));
     return mean(ones, std::min(kSlopeWeight * slopes, kMaxSlopeCost));
-  }
-
-  int smooth_difference(int x, int y, int candidate) const {
-    return mean(difference(x, y, candidate),
-                mean(difference(x - 1, y, candidate), difference(x + 1, y, candidate)));
-  }
-
-  int matching_cost(int x, int y, int candidate) const {
-    return mean(smooth_difference(x, y, candidate), mean(smooth_difference(x, y - 1, candidate),
-                                                         smooth_difference(x, y + 1, candidate)));
   }
 
   int cost(int x, int y, int candidate) const {

@@ -11,154 +11,185 @@
 namespace stereovox {
 namespace {
 
-// ln(1 + cost), for costs up to 255.
-const std::array<float, 256>& log_of_raised() {
-  static const std::array<float, 256> table = [] {
-    std::array<float, 256> logs = {};
+constexpr int kColumnBits = 16;
+constexpr std::uint32_t kColumnMask = (1U << kColumnBits) - 1;
+constexpr std::int16_t kNobodysDisparity = std::numeric_limits<std::int16_t>::max();
+
+// kLogRatioSteps ln(1 + cost).
+const std::array<std::int16_t, 256>& log_of_raised() {
+  static const std::array<std::int16_t, 256> table = [] {
+    std::array<std::int16_t, 256> logs = {};
     for (std::size_t i = 0; i < logs.size(); ++i)
-      logs[i] = static_cast<float>(std::log1p(static_cast<double>(i)));
+      logs[i] = static_cast<std::int16_t>(
+          std::lround(kLogRatioSteps * std::log1p(static_cast<double>(i))));
     return logs;
   }();
   return table;
 }
 
-void fill_disparities(const WinnerRow& winners, int max_disparity_px, float* disparity_px) {
-  for (std::size_t u = 0; u < winners.local.size(); ++u) {
-    const int cost = winners.local[u], before = winners.local_before[u];
-    const int after = winners.local_after[u], bend = before + after - 2 * cost;
-    const bool has_vertex = before != kNoLocalCost && after != kNoLocalCost &&
-                            std::min(before, after) >= cost && bend > 0;
+// In steps.
+void fill_disparities(const WinnerRow& winners, int max_disparity_px, std::int16_t* disparity) {
+  constexpr int kHalf = kStepsPerPixel / 2;
+  const std::uint8_t* const costs = winners.local.data();
+  const std::uint8_t* const costs_before = winners.local_before.data();
+  const std::uint8_t* const costs_after = winners.local_after.data();
+  const std::uint8_t* const candidates = winners.candidate.data();
+  const int width = static_cast<int>(winners.local.size());
+  for (int u = 0; u < width; ++u) {
+    const int cost = costs[u], before = costs_before[u], after = costs_after[u];
+    const int bend = before + after - 2 * cost;
+    const bool has_vertex = (before != kNoLocalCost) & (after != kNoLocalCost) & (before >= cost) &
+                            (after >= cost) & (bend > 0);
     const float shift =
-        static_cast<float>(before - after) / static_cast<float>(2 * std::max(bend, 1));
-    disparity_px[u] =
-        static_cast<float>(max_disparity_px - winners.candidate[u]) - (has_vertex ? shift : 0.0F);
+        static_cast<float>(kHalf * (before - after)) / static_cast<float>(std::max(bend, 1));
+    constexpr float kRounding = 0.5F;
+    const int rounded = static_cast<int>(shift + (kHalf + kRounding)) - kHalf;
+    disparity[u] = static_cast<std::int16_t>((max_disparity_px - candidates[u]) * kStepsPerPixel -
+                                             (has_vertex ? rounded : 0));
   }
 }
 
-// Who matches each right pixel best: its cost, and below that its column; the first of equals.
-class RightOwners {
- public:
-  RightOwners(const WinnerRow& winners, int max_disparity_px)
-      : winners_(winners),
-        max_disparity_px_(max_disparity_px),
-        owner_(winners.cost.size(), kNobody) {
-    for (int u = 0; u < width(); ++u)
-      if (const int there = right_column(u); is_inside(there))
-        owner_[there] =
-            std::min(owner_[there], winners.cost[u] << kColumnBits | static_cast<std::uint32_t>(u));
-  }
-
-  int width() const { return static_cast<int>(owner_.size()); }
-  int right_column(int u) const { return u - max_disparity_px_ + winners_.candidate[u]; }
-  bool is_inside(int column) const { return column >= 0 && column < width(); }
-  bool has_owner(int column) const { return is_inside(column) && owner_[column] != kNobody; }
-  int owner(int column) const { return static_cast<int>(owner_[column] & kColumnMask); }
-
- private:
-  static constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
-  static constexpr int kColumnBits = 16;
-  static constexpr std::uint32_t kColumnMask = (1U << kColumnBits) - 1;
-
-  const WinnerRow& winners_;
-  const int max_disparity_px_;
-  std::vector<std::uint32_t> owner_;
-};
-
-// A sub-pixel disparity ends between two right pixels; one of them must agree.
-void fill_left_right(const RightOwners& owners, const float* disparity_px, float* left_right_px) {
-  for (int u = 0; u < owners.width(); ++u) {
-    const int there = owners.right_column(u);
-    left_right_px[u] = std::numeric_limits<float>::infinity();
-    if (!owners.is_inside(there)) continue;
-    const bool ends_before = disparity_px[u] > static_cast<float>(u - there);
-    for (const int column : {there, ends_before ? there - 1 : there + 1}) {
-      if (!owners.has_owner(column)) continue;
-      const float difference_px = std::abs(disparity_px[u] - disparity_px[owners.owner(column)]);
-      left_right_px[u] = std::min(left_right_px[u], std::min(difference_px, kMaxLeftRight_px));
-    }
-  }
+void fill_log_ratios(const WinnerRow& winners, std::uint8_t* out) {
+  const std::array<std::int16_t, 256>& log = log_of_raised();
+  for (std::size_t u = 0; u < winners.cost.size(); ++u)
+    out[u] = static_cast<std::uint8_t>(
+        std::clamp(log[winners.second[u]] - log[winners.cost[u]], 0, kMaxLogRatio));
 }
 
 bool is_recorded(const cv::Mat1b& valid, int v, int u) { return valid.empty() || valid(v, u) != 0; }
 
-bool joins_recorded_pixels(const RectifiedPair& pair, int v, int u, float disparity_px) {
-  const int there = u - static_cast<int>(std::lround(disparity_px));
-  return there >= 0 && there < pair.right.width() && is_recorded(pair.valid_left, v, u) &&
-         is_recorded(pair.valid_right, v, there);
-}
-
+// Rejects pixels by setting their disparity to 0.
 class Judge {
  public:
   Judge(const RectifiedPair& pair, const MatchFeatures& features, const CensusSearch& search,
         const ConfidenceModel& model)
       : pair_(pair),
         features_(features),
-        table_(model),
-        min_log_ratio_(static_cast<float>(
-            -std::log1p(-kPercent * static_cast<double>(search.uniqueness_ratio_percent)))),
-        max_left_right_px_(static_cast<float>(search.left_right_tolerance_px)),
-        min_confidence_(static_cast<float>(search.min_confidence)) {}
+        table_(model, search.candidates()),
+        min_log_ratio_(static_cast<int>(std::lround(
+            -kLogRatioSteps * std::log1p(-kPercent * double(search.uniqueness_ratio_percent))))),
+        max_left_right_(search.left_right_tolerance_px * kStepsPerPixel),
+        min_level_(table_.first_level_of(search.min_confidence)),
+        sure_level_(table_.first_level_of(search.island_confidence)) {}
 
-  void judge_row(int v, DisparityImage& out) const {
-    const float* const disparity_px = features_.disparity_px[v];
-    const float* const log_ratio = features_.log_ratio[v];
-    const float* const left_right_px = features_.left_right_px[v];
-    const float* const variance_px2 = features_.variance_px2[v];
-    for (int u = 0; u < out.width(); ++u) {
-      if (!(disparity_px[u] > 0.0F) || log_ratio[u] < min_log_ratio_ ||
-          left_right_px[u] > max_left_right_px_)
-        continue;
-      const Credence credence = table_.of(log_ratio[u], left_right_px[u], variance_px2[u]);
-      if (credence.confidence < min_confidence_ ||
-          !joins_recorded_pixels(pair_, v, u, disparity_px[u]))
-        continue;
-      out.disparity_px(v, u) = disparity_px[u];
-      out.sigma_px(v, u) = credence.sigma_px;
-      out.confidence(v, u) = credence.confidence;
+  const CredenceTable& table() const { return table_; }
+
+  // Writes the levels of confidence, the disparities that pass or 0, and 1 where islands may stay.
+  void judge_row(int v, std::uint8_t* level, std::int16_t* passed, std::uint8_t* is_sure) const {
+    table_.fill_level_row(features_, v, level);
+    const std::int16_t* const disparity = features_.disparity[v];
+    const std::uint8_t* const log_ratio = features_.log_ratio[v];
+    const std::uint8_t* const left_right = features_.left_right[v];
+    const int width = features_.disparity.cols;
+    constexpr int kHalf = kStepsPerPixel / 2;
+    for (int u = 0; u < width; ++u) {
+      const bool reaches_in = u * kStepsPerPixel + kHalf > disparity[u];
+      const bool passes = (disparity[u] > 0) & reaches_in & (log_ratio[u] >= min_log_ratio_) &
+                          (left_right[u] <= max_left_right_) & (level[u] >= min_level_);
+      passed[u] = passes ? disparity[u] : std::int16_t{0};
+      is_sure[u] = level[u] >= sure_level_ ? 1 : 0;
     }
+    if (!pair_.valid_left.empty() || !pair_.valid_right.empty()) keep_recorded(v, passed);
   }
 
  private:
   static constexpr double kPercent = 0.01;
 
+  void keep_recorded(int v, std::int16_t* passed) const {
+    for (int u = 0; u < features_.disparity.cols; ++u) {
+      const int there = u - (passed[u] + kStepsPerPixel / 2) / kStepsPerPixel;
+      if (!is_recorded(pair_.valid_left, v, u) || !is_recorded(pair_.valid_right, v, there))
+        passed[u] = 0;
+    }
+  }
+
   const RectifiedPair& pair_;
   const MatchFeatures& features_;
   const CredenceTable table_;
-  const float min_log_ratio_, max_left_right_px_, min_confidence_;
+  const int min_log_ratio_, max_left_right_, min_level_, sure_level_;
 };
 
-void forget_removed(DisparityImage& image, int v) {
-  for (int u = 0; u < image.width(); ++u)
-    if (image.disparity_px(v, u) == 0.0F) image.sigma_px(v, u) = image.confidence(v, u) = 0.0F;
+void write_row(const std::int16_t* passed, const std::uint8_t* level, const CredenceTable& table,
+               int v, DisparityImage& out) {
+  float* const disparity_px = out.disparity_px[v];
+  float *const sigma_px = out.sigma_px[v], *const confidence = out.confidence[v];
+  for (int u = 0; u < out.width(); ++u) {
+    const Credence credence = passed[u] != 0 ? table.at(level[u]) : Credence{};
+    disparity_px[u] = static_cast<float>(passed[u]) * (1.0F / kStepsPerPixel);
+    sigma_px[u] = credence.sigma_px;
+    confidence[u] = credence.confidence;
+  }
 }
 
 }  // namespace
 
 MatchFeatures features_of_size(cv::Size size) {
-  return {cv::Mat1f(size), cv::Mat1f(size), cv::Mat1f(size), cv::Mat1f(size)};
+  return {cv::Mat1s(size), cv::Mat1b(size), cv::Mat1b(size), cv::Mat1b(size)};
 }
 
-void fill_feature_row(const WinnerRow& winners, int max_disparity_px, int v,
-                      MatchFeatures& features) {
-  fill_disparities(winners, max_disparity_px, features.disparity_px[v]);
-  fill_left_right(RightOwners(winners, max_disparity_px), features.disparity_px[v],
-                  features.left_right_px[v]);
-  const std::array<float, 256>& log_raised = log_of_raised();
-  float* const log_ratio = features.log_ratio[v];
-  for (std::size_t u = 0; u < winners.cost.size(); ++u)
-    log_ratio[u] = std::max(0.0F, log_raised[winners.second[u]] - log_raised[winners.cost[u]]);
+FeatureRows::FeatureRows(int width_px, int min_disparity_px, int max_disparity_px)
+    : width_px_(width_px),
+      max_disparity_px_(max_disparity_px),
+      before_(std::max(0, max_disparity_px) + 1),
+      after_(std::max(0, -min_disparity_px) + 1),
+      owner_(before_ + width_px + after_),
+      disparity_(width_px + 1) {}
+
+void FeatureRows::fill(const WinnerRow& winners, int v, MatchFeatures& features) {
+  fill_disparities(winners, max_disparity_px_, features.disparity[v]);
+  find_owners(winners);
+  fill_left_right(winners, features.disparity[v], features.left_right[v]);
+  fill_log_ratios(winners, features.log_ratio[v]);
+  std::ranges::copy(winners.local, features.local_cost[v]);
+}
+
+// Right pixels beyond the image have no owner, nor have those that nobody matches best.
+void FeatureRows::find_owners(const WinnerRow& winners) {
+  const auto nobody = std::numeric_limits<std::uint32_t>::max() << kColumnBits |
+                      static_cast<std::uint32_t>(width_px_);
+  std::ranges::fill(owner_, nobody);
+  std::uint32_t* const owner = owner_.data() + before_ - max_disparity_px_;
+  for (int u = 0; u < width_px_; ++u) {
+    std::uint32_t& best = owner[u + winners.candidate[u]];
+    best = std::min(best, static_cast<std::uint32_t>(winners.cost[u]) << kColumnBits |
+                              static_cast<std::uint32_t>(u));
+  }
+  std::fill_n(owner_.begin(), before_, nobody);
+  std::fill_n(owner_.rbegin(), after_, nobody);
+}
+
+// A sub-pixel disparity ends between two right pixels; one of them must agree.
+void FeatureRows::fill_left_right(const WinnerRow& winners, const std::int16_t* disparity,
+                                  std::uint8_t* out) {
+  std::copy_n(disparity, width_px_, disparity_.begin());
+  disparity_.back() = kNobodysDisparity;
+  const std::uint32_t* const owner = owner_.data() + before_ - max_disparity_px_;
+  const auto difference = [&](int u, int there) {
+    return std::abs(disparity[u] - disparity_[owner[there] & kColumnMask]);
+  };
+  for (int u = 0; u < width_px_; ++u) {
+    const int candidate = winners.candidate[u], there = u + candidate;
+    const bool ends_before = disparity[u] > (max_disparity_px_ - candidate) * kStepsPerPixel;
+    const int smallest =
+        std::min(difference(u, there), difference(u, ends_before ? there - 1 : there + 1));
+    out[u] = static_cast<std::uint8_t>(std::min(smallest, kMaxLeftRight));
+  }
 }
 
 DisparityImage judge_matches(const RectifiedPair& pair, const MatchFeatures& features,
                              const CensusSearch& search, const ConfidenceModel& model,
                              int threads) {
-  const cv::Size size = features.disparity_px.size();
-  DisparityImage out{cv::Mat1f(size, 0.0F), cv::Mat1f(size, 0.0F), cv::Mat1f(size, 0.0F)};
+  const cv::Size size = features.disparity.size();
   const Judge judge(pair, features, search, model);
-  parallel_for(0, size.height, threads, [&](int v) { judge.judge_row(v, out); });
-  remove_speckles(out.disparity_px, search.speckle_size_px,
-                  static_cast<float>(search.speckle_range_px));
-  parallel_for(0, size.height, threads, [&](int v) { forget_removed(out, v); });
+  cv::Mat1b level(size), is_sure(size);
+  cv::Mat1s passed(size);
+  parallel_for(0, size.height, threads,
+               [&](int v) { judge.judge_row(v, level[v], passed[v], is_sure[v]); });
+  remove_speckles(passed, is_sure, search.speckle_size_px,
+                  search.speckle_range_px * kStepsPerPixel);
+  DisparityImage out{cv::Mat1f(size), cv::Mat1f(size), cv::Mat1f(size)};
+  parallel_for(0, size.height, threads,
+               [&](int v) { write_row(passed[v], level[v], judge.table(), v, out); });
   return out;
 }
 

@@ -15,10 +15,24 @@ namespace stereovox {
 
 MatchFeatures features_of_size(cv::Size size);
 
-// Writes row v of all features but the variance. The sub-pixel position is the vertex of the
-// parabola through the local costs of the winner and its neighbours.
-void fill_feature_row(const WinnerRow& winners, int max_disparity_px, int v,
-                      MatchFeatures& features);
+// Turns the winners of a row of images of this width into its features; keeps memory from row to
+// row. The sub-pixel position is the vertex of the parabola through the local costs of the winner
+// and its neighbours.
+class FeatureRows {
+ public:
+  FeatureRows(int width_px, int min_disparity_px, int max_disparity_px);
+  void fill(const WinnerRow& winners, int v, MatchFeatures& features);
+
+ private:
+  void find_owners(const WinnerRow& winners);
+  void fill_left_right(const WinnerRow& winners, const std::int16_t* disparity, std::uint8_t* out);
+
+  const int width_px_, max_disparity_px_;
+  const int before_, after_;  // right pixels beyond the image that candidates may reach
+  // Who matches each right pixel best: its cost, and below that its column; the first of equals.
+  std::vector<std::uint32_t> owner_;
+  std::vector<std::int16_t> disparity_;  // one more than pixels: what nobody has
+};
 
 // Disparities that pass the checks of `search`, join two recorded pixels and are > 0, with the
 // confidence and sigma of `model`.

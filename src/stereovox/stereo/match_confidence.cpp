@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 namespace stereovox {
@@ -11,86 +10,124 @@ namespace {
 
 constexpr int kHalfWindow_px = 2;
 constexpr int kWindow_px = 2 * kHalfWindow_px + 1;
-constexpr float kStepsPerPixel = 4.0F;  // of the disparities whose variance is summed
-// 1 + variance is rounded to sixteen steps in each power of two: to these bits of a float.
-constexpr int kDroppedBits = 19;
-constexpr double kStepsPerOctave = 16.0;
-constexpr std::uint32_t kBitsOfOne = std::bit_cast<std::uint32_t>(1.0F);
+constexpr int kArea = kWindow_px * kWindow_px;
+// Variances are summed over steps of this many smaller ones: their squares then fit 32 bits.
+constexpr int kCoarse = 8;
+constexpr float kCoarsePerPixel = static_cast<float>(kStepsPerPixel) / kCoarse;
+constexpr float kToVariance = 1.0F / (kArea * kArea * kCoarsePerPixel * kCoarsePerPixel);
 
-// In whole steps; sums of squares wrap around, their variance does not.
+constexpr double kSpan = ConfidenceModel::kMaxLogit - ConfidenceModel::kMinLogit;
+constexpr double kLevelsPerLogit = (CredenceTable::kLevels - 1) / kSpan;
+
+// Of the rows about v; sums of squares wrap around, their variance does not. Two more on either
+// side repeat the ends.
 struct Moments {
   std::vector<std::uint32_t> sum, square_sum;
 
-  explicit Moments(int width) : sum(width), square_sum(width) {}
-  void add_row(const float* disparity_px) {
-    for (std::size_t u = 0; u < sum.size(); ++u) {
-      const auto steps =
-          static_cast<std::uint32_t>(static_cast<std::int32_t>(kStepsPerPixel * disparity_px[u]));
-      sum[u] += steps;
-      square_sum[u] += steps * steps;
+  explicit Moments(int width)
+      : sum(width + 2 * kHalfWindow_px), square_sum(width + 2 * kHalfWindow_px) {}
+
+  void add_row(const std::int16_t* disparity, int width) {
+    std::uint32_t* const sums = sum.data() + kHalfWindow_px;
+    std::uint32_t* const squares = square_sum.data() + kHalfWindow_px;
+    for (int u = 0; u < width; ++u) {
+      const std::int32_t coarse = disparity[u] / kCoarse;
+      sums[u] += static_cast<std::uint32_t>(coarse);
+      squares[u] += static_cast<std::uint32_t>(coarse * coarse);
+    }
+  }
+
+  void repeat_ends() {
+    for (std::vector<std::uint32_t>* const row : {&sum, &square_sum}) {
+      std::fill_n(row->begin(), kHalfWindow_px, (*row)[kHalfWindow_px]);
+      std::fill_n(row->rbegin(), kHalfWindow_px, row->rbegin()[kHalfWindow_px]);
     }
   }
 };
 
-double probability(double logit) { return 1.0 / (1.0 + std::exp(-logit)); }
+// At `place`, counted in bins from the start of the first.
+float between(const std::array<double, ConfidenceModel::kBins>& bins, double place) {
+  constexpr double kMiddle = 0.5;
+  const double from_middle = std::clamp(place - kMiddle, 0.0, ConfidenceModel::kBins - 1.0);
+  const auto i = std::min(static_cast<std::size_t>(from_middle), bins.size() - 2);
+  return static_cast<float>(std::lerp(bins[i], bins[i + 1], from_middle - static_cast<double>(i)));
+}
 
 }  // namespace
 
-CredenceTable::CredenceTable(const ConfidenceModel& model) {
-  constexpr double kSpan = ConfidenceModel::kMaxLogit - ConfidenceModel::kMinLogit;
-  constexpr double kLevelsPerLogit = (kLevels - 1) / kSpan;
-  const auto in_levels = [](double logit) { return static_cast<float>(logit * kLevelsPerLogit); };
-  constexpr double kRounding = 0.5;
-  bias_ = in_levels(model.bias - ConfidenceModel::kMinLogit) + static_cast<float>(kRounding);
-  ratio_ = in_levels(model.ratio);
-  left_right_ = in_levels(model.left_right);
-  for (int step = 0; step < kLevels; ++step) {
-    const double log_variance = (step + kRounding) / kStepsPerOctave * std::log(2.0);
-    variance_term_[step] = in_levels(model.variance * (step == 0 ? 0.0 : log_variance));
-  }
-  for (int level = 0; level < kLevels; ++level) {
-    const int bin = level * ConfidenceModel::kSigmaBins / kLevels;
-    const double logit = ConfidenceModel::kMinLogit + level / kLevelsPerLogit;
-    levels_[level] = {static_cast<float>(probability(logit)),
-                      static_cast<float>(model.sigma_px[bin])};
-  }
+double log_of_candidates(int candidates) {
+  constexpr double kUsual = 64;
+  return std::log2(candidates / kUsual);
 }
 
-Credence CredenceTable::of(float log_ratio, float left_right_px, float variance_px2) const {
-  const float raised = 1.0F + std::min(variance_px2, kMaxVariance_px2);
-  const std::uint32_t step = (std::bit_cast<std::uint32_t>(raised) - kBitsOfOne) >> kDroppedBits;
-  const float level = bias_ + ratio_ * std::min(log_ratio, kMaxLogRatio) -
-                      left_right_ * std::min(left_right_px, kMaxLeftRight_px) -
-                      variance_term_[step];
-  return levels_[static_cast<int>(std::clamp(level, 0.0F, static_cast<float>(kLevels - 1)))];
+float log_of_raised_variance(float variance_px2) {
+  constexpr float kOnePerOctave = 0x1p-23F;
+  const auto bits = std::bit_cast<std::int32_t>(1.0F + std::min(variance_px2, kMaxVariance_px2));
+  return kOnePerOctave * static_cast<float>(bits - std::bit_cast<std::int32_t>(1.0F));
 }
 
-void fill_variance_row(MatchFeatures& features, int v) {
-  const cv::Mat1f& disparity_px = features.disparity_px;
-  const int width = disparity_px.cols;
+void fill_variance_row(const cv::Mat1s& disparity, int v, float* variance_px2) {
+  const int width = disparity.cols;
   Moments column(width);
   for (int dv = -kHalfWindow_px; dv <= kHalfWindow_px; ++dv)
-    column.add_row(disparity_px[std::clamp(v + dv, 0, disparity_px.rows - 1)]);
-
-  constexpr int kArea = kWindow_px * kWindow_px;
-  constexpr float kToVariance = 1.0F / (kArea * kArea * kStepsPerPixel * kStepsPerPixel);
-  float* const out = features.variance_px2[v];
-  const auto variance = [&](auto neighbour) {
+    column.add_row(disparity[std::clamp(v + dv, 0, disparity.rows - 1)], width);
+  column.repeat_ends();
+  const std::uint32_t *const sums = column.sum.data(), *const squares = column.square_sum.data();
+  for (int u = 0; u < width; ++u) {
     std::uint32_t sum = 0, square_sum = 0;
-    for (int du = -kHalfWindow_px; du <= kHalfWindow_px; ++du) {
-      sum += column.sum[neighbour(du)];
-      square_sum += column.square_sum[neighbour(du)];
+    for (int k = 0; k < kWindow_px; ++k) {
+      sum += sums[u + k];
+      square_sum += squares[u + k];
     }
-    return kToVariance *
-           static_cast<float>(static_cast<std::int32_t>(kArea * square_sum - sum * sum));
-  };
-  const auto at_border = [&](int u) {
-    out[u] = variance([&](int du) { return std::clamp(u + du, 0, width - 1); });
-  };
-  for (int u = 0; u < std::min(kHalfWindow_px, width); ++u) at_border(u);
-  for (int u = kHalfWindow_px; u < width - kHalfWindow_px; ++u)
-    out[u] = variance([u](int du) { return u + du; });
-  for (int u = std::max(kHalfWindow_px, width - kHalfWindow_px); u < width; ++u) at_border(u);
+    variance_px2[u] =
+        kToVariance * static_cast<float>(static_cast<std::int32_t>(kArea * square_sum - sum * sum));
+  }
+}
+
+PixelFeatures features_at(const MatchFeatures& features, int v, int u, float variance_px2) {
+  return {static_cast<float>(features.log_ratio(v, u)) / kLogRatioSteps,
+          static_cast<float>(features.left_right(v, u)) / kStepsPerPixel,
+          log_of_raised_variance(variance_px2), static_cast<float>(features.local_cost(v, u))};
+}
+
+CredenceTable::CredenceTable(const ConfidenceModel& model, int candidates) {
+  constexpr double kRounding = 0.5;
+  const auto in_levels = [](double logit) { return static_cast<float>(logit * kLevelsPerLogit); };
+  const double bias = model.bias + model.candidates * log_of_candidates(candidates);
+  bias_ = in_levels(bias - ConfidenceModel::kMinLogit) + static_cast<float>(kRounding);
+  log_ratio_ = in_levels(model.ratio / kLogRatioSteps);
+  left_right_ = in_levels(-model.left_right / kStepsPerPixel);
+  variance_ = in_levels(-model.variance);
+  local_cost_ = in_levels(-model.local);
+  for (int level = 0; level < kLevels; ++level) {
+    const double place = static_cast<double>(level) * ConfidenceModel::kBins / (kLevels - 1);
+    levels_[static_cast<std::size_t>(level)] = {between(model.right, place),
+                                                between(model.sigma_px, place)};
+  }
+}
+
+int CredenceTable::first_level_of(double confidence) const {
+  int level = 0;
+  while (level < kLevels && static_cast<double>(levels_[level].confidence) < confidence) ++level;
+  return level;
+}
+
+void CredenceTable::fill_level_row(const MatchFeatures& features, int v,
+                                   std::uint8_t* level) const {
+  const int width = features.disparity.cols;
+  std::vector<float> variance_px2(width);
+  fill_variance_row(features.disparity, v, variance_px2.data());
+  const std::uint8_t* const log_ratio = features.log_ratio[v];
+  const std::uint8_t* const left_right = features.left_right[v];
+  const std::uint8_t* const local_cost = features.local_cost[v];
+  const auto term = [](float weight, std::uint8_t x) { return weight * static_cast<float>(x); };
+  for (int u = 0; u < width; ++u) {
+    const float sum = bias_ + term(log_ratio_, log_ratio[u]) + term(left_right_, left_right[u]) +
+                      variance_ * log_of_raised_variance(variance_px2[u]) +
+                      term(local_cost_, local_cost[u]);
+    const float limited = std::min(std::max(sum, 0.0F), static_cast<float>(kLevels - 1));
+    level[u] = static_cast<std::uint8_t>(static_cast<int>(limited));
+  }
 }
 
 }  // namespace stereovox

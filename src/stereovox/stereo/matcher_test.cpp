@@ -107,11 +107,16 @@ double density(const DisparityImage& found) {
   return cv::countNonZero(found.disparity_px) / static_cast<double>(kSize.area());
 }
 
-TEST(CensusSgm, NoiseOfTwoGreyValuesIsNoSurface) {
+class NoiseBetweenCameras : public testing::TestWithParam<unsigned> {};
+
+INSTANTIATE_TEST_SUITE_P(GreyValues, NoiseBetweenCameras, testing::Values(2U, 3U, 5U, 16U, 256U));
+
+TEST_P(NoiseBetweenCameras, IsNoSurface) {
   std::mt19937 random(7);
-  RectifiedPair pair = pair_of([&](int, int) { return static_cast<std::uint8_t>(random() % 3); });
-  pair.right = pair_of([&](int, int) { return static_cast<std::uint8_t>(random() % 3); }).left;
-  EXPECT_LT(density(match(pair, CensusSgmParams{})), 0.05);
+  const auto gray = [&](int, int) { return static_cast<std::uint8_t>(random() % GetParam()); };
+  RectifiedPair pair = pair_of(gray);
+  pair.right = pair_of(gray).left;
+  EXPECT_LT(density(match(pair, CensusSgmParams{})), 0.002);
 }
 
 TEST(CensusSgm, StripesThatRepeatAreNoSurface) {

@@ -1,33 +1,37 @@
 #include "stereovox/stereo/speckles.h"
 
-#include <cmath>
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
 #include <utility>
 #include <vector>
 
 namespace stereovox {
 namespace {
 
-constexpr int kNoRun = -1;
+// Neighbouring pixels of a row that belong together.
+struct Run {
+  int begin, end;
+};
 
-// Union-find over runs: neighbouring pixels of a row that belong together.
+// Union-find over runs.
 class Islands {
  public:
-  int add_run() {
+  void add_run(int count) {
     parent_.push_back(static_cast<int>(parent_.size()));
-    size_px_.push_back(0);
-    return parent_.back();
+    count_.push_back(count);
   }
-  void add_pixels(int run, int count) { size_px_[run] += count; }
 
   void join(int a, int b) {
     a = root(a);
     b = root(b);
     if (a == b) return;
-    if (size_px_[a] < size_px_[b]) std::swap(a, b);
+    if (count_[a] < count_[b]) std::swap(a, b);
     parent_[b] = a;
-    size_px_[a] += size_px_[b];
+    count_[a] += count_[b];
   }
-  int size_px(int run) { return size_px_[root(run)]; }
+  int count(int run) { return count_[root(run)]; }
 
  private:
   int root(int run) {
@@ -35,55 +39,81 @@ class Islands {
     return run;
   }
 
-  std::vector<int> parent_, size_px_;
+  std::vector<int> parent_, count_;
 };
 
-bool belong_together(float a_px, float b_px, float max_step_px) {
-  return a_px > 0.0F && b_px > 0.0F && std::abs(a_px - b_px) <= max_step_px;
-}
+class Speckles {
+ public:
+  Speckles(cv::Mat1s& disparity, const cv::Mat1b& counts, int max_step)
+      : disparity_(disparity), counts_(counts), max_step_(max_step), ends_(disparity.cols + 1) {}
 
-void find_runs(const float* disparity_px, int width, float max_step_px, int* run_of,
-               Islands& islands) {
-  int begin = 0;
-  for (int u = 1; u <= width; ++u) {
-    if (u < width && belong_together(disparity_px[u - 1], disparity_px[u], max_step_px)) continue;
-    const bool is_none = !(disparity_px[begin] > 0.0F);
-    const int run = is_none ? kNoRun : islands.add_run();
-    if (!is_none) islands.add_pixels(run, u - begin);
-    std::fill(run_of + begin, run_of + u, run);
-    begin = u;
+  void remove(int min_count) {
+    std::size_t first_above = 0, first_here = 0;
+    for (int v = 0; v < disparity_.rows; ++v) {
+      add_runs(v);
+      if (v > 0) join_rows(v, first_above, first_here);
+      first_above = first_here;
+      first_here = runs_.size();
+      row_ends_.push_back(first_here);
+    }
+    std::size_t i = 0;
+    for (int v = 0; v < disparity_.rows; ++v)
+      for (; i < row_ends_[v]; ++i)
+        if (islands_.count(static_cast<int>(i)) < min_count)
+          std::fill(disparity_[v] + runs_[i].begin, disparity_[v] + runs_[i].end, std::int16_t{0});
   }
-}
 
-void join_rows(const float* above_px, const float* here_px, int width, float max_step_px,
-               const int* runs_above, const int* runs_here, Islands& islands) {
-  std::pair<int, int> joined = {kNoRun, kNoRun};
-  for (int u = 0; u < width; ++u) {
-    const std::pair<int, int> runs = {runs_above[u], runs_here[u]};
-    if (runs == joined || !belong_together(above_px[u], here_px[u], max_step_px)) continue;
-    islands.join(runs.first, runs.second);
-    joined = runs;
+ private:
+  void add_runs(int v) {
+    const std::int16_t* const row = disparity_[v];
+    const std::uint8_t* const counts = counts_[v];
+    const int width = disparity_.cols;
+    for (int u = 1; u < width; ++u)
+      ends_[u] = static_cast<char>((std::abs(row[u] - row[u - 1]) > max_step_) |
+                                   ((row[u] > 0) != (row[u - 1] > 0)));
+    ends_[width] = 1;
+    for (int begin = 0, end = 0; begin < width; begin = end) {
+      const void* const next = std::memchr(&ends_[begin + 1], 1, width - begin);
+      end = static_cast<int>(static_cast<const char*>(next) - ends_.data());
+      if (row[begin] <= 0) continue;
+      runs_.push_back({begin, end});
+      int count = 0;
+      for (int u = begin; u < end; ++u) count += counts[u] != 0 ? 1 : 0;
+      islands_.add_run(count);
+    }
   }
-}
+
+  // Row v has the runs from `here` on, the row above those from `above` to `here`.
+  void join_rows(int v, std::size_t above, std::size_t here) {
+    const std::size_t end_above = here;
+    while (above < end_above && here < runs_.size()) {
+      const Run &a = runs_[above], &b = runs_[here];
+      if (touch(v, std::max(a.begin, b.begin), std::min(a.end, b.end)))
+        islands_.join(static_cast<int>(above), static_cast<int>(here));
+      ++(a.end < b.end ? above : here);
+    }
+  }
+
+  bool touch(int v, int begin, int end) const {
+    const std::int16_t *const above = disparity_[v - 1], *const here = disparity_[v];
+    for (int u = begin; u < end; ++u)
+      if (std::abs(above[u] - here[u]) <= max_step_) return true;
+    return false;
+  }
+
+  cv::Mat1s& disparity_;
+  const cv::Mat1b& counts_;
+  const int max_step_;
+  std::vector<char> ends_;  // 1 where a run has ended before this pixel
+  std::vector<Run> runs_;
+  std::vector<std::size_t> row_ends_;  // of each row's runs
+  Islands islands_;
+};
 
 }  // namespace
 
-void remove_speckles(cv::Mat1f& disparity_px, int min_size_px, float max_step_px) {
-  const int width = disparity_px.cols;
-  cv::Mat1i run_of(disparity_px.size());
-  Islands islands;
-  for (int v = 0; v < disparity_px.rows; ++v) {
-    find_runs(disparity_px[v], width, max_step_px, run_of[v], islands);
-    if (v > 0)
-      join_rows(disparity_px[v - 1], disparity_px[v], width, max_step_px, run_of[v - 1], run_of[v],
-                islands);
-  }
-  for (int v = 0; v < disparity_px.rows; ++v)
-    for (int u = 0, run = kNoRun, size_px = 0; u < width; ++u) {
-      if (run_of(v, u) == kNoRun) continue;
-      if (std::exchange(run, run_of(v, u)) != run) size_px = islands.size_px(run);
-      if (size_px < min_size_px) disparity_px(v, u) = 0.0F;
-    }
+void remove_speckles(cv::Mat1s& disparity, const cv::Mat1b& counts, int min_count, int max_step) {
+  Speckles(disparity, counts, max_step).remove(min_count);
 }
 
 }  // namespace stereovox

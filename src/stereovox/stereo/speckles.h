@@ -5,9 +5,10 @@
 
 namespace stereovox {
 
-// Sets disparities to 0 in islands of fewer than `min_size_px` pixels; disparities that are not > 0
-// belong to none. An island is what can be reached by steps to the four neighbours whose
-// disparities differ by at most `max_step_px`. Linear in the number of pixels.
-void remove_speckles(cv::Mat1f& disparity_px, int min_size_px, float max_step_px);
+// Sets disparities, in any unit, to 0 in islands with fewer than `min_count` pixels that count:
+// those where `counts` is not 0. Disparities that are not > 0 belong to no island. An island is
+// what can be reached by steps to the four neighbours whose disparities differ by at most
+// `max_step`. Linear in the number of pixels.
+void remove_speckles(cv::Mat1s& disparity, const cv::Mat1b& counts, int min_count, int max_step);
 
 }  // namespace stereovox

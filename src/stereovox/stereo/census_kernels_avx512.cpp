@@ -1,0 +1,22 @@
+// Compiled for AVX-512 where the compiler knows it; entered only on a machine that has it. Numbers
+// of candidates that do not fill its vectors are left to those of AVX2.
+#include "stereovox/stereo/census_kernels.h"
+
+#ifdef __AVX512BW__
+#include "stereovox/stereo/bytes_avx2.h"
+#include "stereovox/stereo/bytes_avx512.h"
+#include "stereovox/stereo/census_kernels_impl.h"
+#endif
+
+namespace stereovox {
+
+const CensusKernels* avx512_census_kernels() {
+#ifdef __AVX512BW__
+  static constexpr CensusKernels kernels = make_census_kernels<BytesAvx2, BytesAvx512>();
+  return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx2") ? &kernels : nullptr;
+#else
+  return nullptr;
+#endif
+}
+
+}  // namespace stereovox

@@ -1,0 +1,88 @@
+// Random images of random sizes, searched in random ranges: whatever comes, the contract of
+// matcher.h holds.
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <random>
+
+#include "stereovox/stereo/census_sgm.h"
+
+namespace stereovox {
+namespace {
+
+class Dice {
+ public:
+  explicit Dice(unsigned seed) : random_(seed) {}
+  int between(int low, int high) {
+    return low + static_cast<int>(random_() % static_cast<unsigned>(high - low + 1));
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+// Constant, noise of some grey values, or noise in blocks.
+cv::Mat1b random_image(cv::Size size, Dice& dice) {
+  const int levels = dice.between(1, 4) * dice.between(1, 64), block_px = dice.between(1, 5);
+  cv::Mat1b image(size);
+  for (int v = 0; v < size.height; ++v)
+    for (int u = 0; u < size.width; ++u)
+      image(v, u) = u % block_px == 0 ? static_cast<std::uint8_t>(dice.between(0, levels - 1))
+                                      : image(v, u - 1);
+  return image;
+}
+
+RectifiedPair random_pair(Dice& dice) {
+  const cv::Size size(dice.between(1, 90), dice.between(1, 260));
+  RectifiedPair pair;
+  pair.left.pixels = random_image(size, dice);
+  pair.right.pixels = dice.between(0, 1) == 0 ? pair.left.pixels.clone() : random_image(size, dice);
+  if (dice.between(0, 2) == 0) pair.valid_left = random_image(size, dice);
+  if (dice.between(0, 2) == 0) pair.valid_right = random_image(size, dice);
+  return pair;
+}
+
+CensusSgmParams random_params(Dice& dice) {
+  CensusSgmParams params;
+  params.search.min_disparity_px = dice.between(-512, 512) / dice.between(1, 30);
+  params.search.disparity_range_px = dice.between(1, kMaxCandidates);
+  params.search.min_confidence = 0.01 * dice.between(0, 60);
+  params.search.left_right_tolerance_px = dice.between(0, 64);
+  params.search.speckle_size_px = dice.between(0, 3);
+  params.search.island_confidence = 0;
+  params.smoothness_small = dice.between(0, 100);
+  params.smoothness_large = dice.between(params.smoothness_small + 1, 220);
+  return params;
+}
+
+void expect_contract(const DisparityImage& found, const CensusSearch& search) {
+  for (int v = 0; v < found.height(); ++v)
+    for (int u = 0; u < found.width(); ++u) {
+      const float disparity_px = found.disparity_px(v, u);
+      ASSERT_EQ(disparity_px > 0, found.sigma_px(v, u) > 0);
+      ASSERT_EQ(disparity_px > 0, found.confidence(v, u) > 0);
+      ASSERT_LE(found.confidence(v, u), 1.0F);
+      if (disparity_px == 0.0F) continue;
+      ASSERT_GE(disparity_px, search.min_disparity_px - 1);
+      ASSERT_LE(disparity_px, search.max_disparity_px() + 1);
+      ASSERT_LE(disparity_px, u + 0.5F);
+    }
+}
+
+class CensusSgmOnRandomInput : public testing::TestWithParam<unsigned> {};
+
+INSTANTIATE_TEST_SUITE_P(Seeds, CensusSgmOnRandomInput, testing::Range(1U, 41U));
+
+TEST_P(CensusSgmOnRandomInput, KeepsItsContractOnAnyNumberOfThreads) {
+  Dice dice(GetParam());
+  const RectifiedPair pair = random_pair(dice);
+  const CensusSgmParams params = random_params(dice);
+  const DisparityImage found = match(pair, params, 1);
+  expect_contract(found, params.search);
+  const DisparityImage again = match(pair, params, 2);
+  EXPECT_EQ(cv::countNonZero(found.disparity_px != again.disparity_px), 0);
+  EXPECT_EQ(cv::countNonZero(found.confidence != again.confidence), 0);
+}
+
+}  // namespace
+}  // namespace stereovox
