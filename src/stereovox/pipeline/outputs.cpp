@@ -58,12 +58,27 @@ std::string yaml_without_resources(PipelineConfig config) {
   return to_yaml(config);
 }
 
-void write_segment(const fs::path& folder, const PipelineConfig& config, MapSegment& segment) {
+// They are dear where hedges line kilometres of road; a map without them is still a map.
+void attach(const WallFaces& faces, VoxelMap& map, std::vector<std::string>& warnings) {
+  constexpr std::size_t kMaxBytes = std::size_t{32} << 20;
+  if (faces.is_empty()) return;
+  std::string bytes = to_bytes(faces);
+  if (bytes.size() <= kMaxBytes)
+    map.attachments[kWallFacesAttachment] = std::move(bytes);
+  else
+    warnings.push_back(
+        fmt::format("map.svx is written without wall faces, which take {} of at most {} bytes: "
+                    "other navigation "
+                    "maps made of it will place walls by contrast alone",
+                    bytes.size(), kMaxBytes));
+}
+
+void write_segment(const fs::path& folder, const PipelineConfig& config, MapSegment& segment,
+                   std::vector<std::string>& warnings) {
   make_folder(folder);
   segment.map.attachments["config.yaml"] = yaml_without_resources(config);
   segment.map.attachments[kSightLinesAttachment] = to_bytes(segment.sight_lines);
-  if (!segment.wall_faces.is_empty())
-    segment.map.attachments[kWallFacesAttachment] = to_bytes(segment.wall_faces);
+  attach(segment.wall_faces, segment.map, warnings);
   write_voxel_map(folder / "map.svx", segment.map);
   write_navigation_map(folder / "nav.yaml", segment.map, segment.sight_lines, segment.wall_faces,
                        segment.trajectory, config.navmap, MapServerMode::trinary);
@@ -85,9 +100,10 @@ void prepare_output_folder(const fs::path& folder, bool overwrite) {
 
 void write_outputs(const fs::path& folder, const StereoSequence& sequence,
                    const PipelineConfig& config, BuildResult& result) {
-  write_segment(folder, config, result.segments.front());
+  write_segment(folder, config, result.segments.front(), result.warnings);
   for (std::size_t i = 1; i < result.segments.size(); ++i)
-    write_segment(folder / fmt::format("segment_{}", i + 1), config, result.segments[i]);
+    write_segment(folder / fmt::format("segment_{}", i + 1), config, result.segments[i],
+                  result.warnings);
   write_text(folder / "config.yaml", to_yaml(config));
   write_text(folder / "report.json", report(sequence, config, result).dump(2) + "\n");
 }
