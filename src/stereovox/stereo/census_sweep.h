@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -63,5 +64,10 @@ class CensusSweep {
 // number at a time. The oracle of the tests.
 std::vector<WinnerRow> sweep_reference(const RectifiedPair& pair, const SweepParams& params,
                                        int first_row, int end_row);
+
+// Moves the winners of a row to the best of them and their two neighbours by the local cost, as
+// WinnerPointers says, plainly. CostAt(x, candidate) is a cost of that row.
+using CostAt = std::function<int(int, int)>;
+void choose_locally_reference(const CostAt& cost, int candidates, WinnerRow& row);
 
 }  // namespace stereovox

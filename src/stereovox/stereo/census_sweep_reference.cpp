@@ -28,7 +28,8 @@ class Reference {
     std::vector<WinnerRow> rows;
     for (int y = first_row_; y < end_row_; ++y) {
       rows.push_back(winners_of(sums[y - first_row_]));
-      for (int x = 0; x < left_.cols; ++x) choose_locally(x, y, rows.back());
+      choose_locally_reference([&](int x, int c) { return cost(x, y, c); }, params_.candidates,
+                               rows.back());
     }
     return rows;
   }
@@ -88,32 +89,36 @@ class Reference {
     return row;
   }
 
-  int local_cost(int x, int y, int candidate) const {
-    if (candidate < 0 || candidate >= params_.candidates) return kNoLocalCost;
-    int sum = 0;
-    for (int dx = -kLocalWidth_px / 2; dx <= kLocalWidth_px / 2; ++dx)
-      sum += cost(std::clamp(x + dx, 0, left_.cols - 1), y, candidate);
-    return sum;
-  }
-
-  void choose_locally(int x, int y, WinnerRow& row) const {
-    const int winner = row.candidate[x];
-    int best = winner;
-    for (const int c : {winner - 1, winner + 1})
-      if (local_cost(x, y, c) < local_cost(x, y, best)) best = c;
-    row.candidate[x] = static_cast<std::uint8_t>(best);
-    row.local_before[x] = static_cast<std::uint8_t>(local_cost(x, y, best - 1));
-    row.local[x] = static_cast<std::uint8_t>(local_cost(x, y, best));
-    row.local_after[x] = static_cast<std::uint8_t>(local_cost(x, y, best + 1));
-  }
-
   const cv::Mat1b left_;
   const SweepParams params_;
   const int first_row_, end_row_;
   std::vector<int> costs_;  // of each pixel's candidates
 };
 
+int local_cost(const CostAt& cost, int x, int candidate, int width_px, int candidates) {
+  if (candidate < 0 || candidate >= candidates) return kNoLocalCost;
+  int sum = 0;
+  for (int dx = -kLocalWidth_px / 2; dx <= kLocalWidth_px / 2; ++dx)
+    sum += cost(std::clamp(x + dx, 0, width_px - 1), candidate);
+  return sum;
+}
+
 }  // namespace
+
+void choose_locally_reference(const CostAt& cost, int candidates, WinnerRow& row) {
+  const int width = static_cast<int>(row.candidate.size());
+  for (int x = 0; x < width; ++x) {
+    const auto local = [&](int c) { return local_cost(cost, x, c, width, candidates); };
+    const int winner = row.candidate[x];
+    int best = winner;
+    for (const int c : {winner - 1, winner + 1})
+      if (local(c) < local(best)) best = c;
+    row.candidate[x] = static_cast<std::uint8_t>(best);
+    row.local_before[x] = static_cast<std::uint8_t>(local(best - 1));
+    row.local[x] = static_cast<std::uint8_t>(local(best));
+    row.local_after[x] = static_cast<std::uint8_t>(local(best + 1));
+  }
+}
 
 std::vector<WinnerRow> sweep_reference(const RectifiedPair& pair, const SweepParams& params,
                                        int first_row, int end_row) {
