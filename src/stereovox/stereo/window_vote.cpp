@@ -55,6 +55,7 @@ struct Mandate {
   int count = 0, disparity = 0, log_ratio = 0, left_right = 0, local_cost = 0;
 };
 
+// Voters are read, all others written: so it may happen in place, in any order.
 class Election {
  public:
   Election(const MatchFeatures& features, const Ballots& ballots, const Arms& arms,
@@ -101,12 +102,12 @@ class Election {
     Mandate sum;
     for_rows_of_window(v, u, [&](int y, int begin, int end) {
       for (int x = begin; x < end; ++x) {
-        const int counts = ballots_.cast(y, x) == kind ? 1 : 0;
-        sum.count += counts;
-        sum.disparity += counts * features_.disparity(y, x);
-        sum.log_ratio += counts * features_.log_ratio(y, x);
-        sum.left_right += counts * features_.left_right(y, x);
-        sum.local_cost += counts * features_.local_cost(y, x);
+        if (ballots_.cast(y, x) != kind) continue;
+        ++sum.count;
+        sum.disparity += features_.disparity(y, x);
+        sum.log_ratio += features_.log_ratio(y, x);
+        sum.left_right += features_.left_right(y, x);
+        sum.local_cost += features_.local_cost(y, x);
       }
     });
     return sum;
@@ -131,10 +132,7 @@ void vote_in_windows(MatchFeatures& features, const Arms& arms, const cv::Mat1b&
                      const VoterParams& params, int threads) {
   const Ballots ballots = ballots_of(features, voters_of(features, recorded, params));
   const Election election(features, ballots, arms, params.min_share);
-  MatchFeatures decided{features.disparity.clone(), features.log_ratio.clone(),
-                        features.left_right.clone(), features.local_cost.clone()};
-  parallel_for(0, ballots.cast.rows, threads, [&](int v) { election.decide_row(v, decided); });
-  features = decided;
+  parallel_for(0, ballots.cast.rows, threads, [&](int v) { election.decide_row(v, features); });
 }
 
 }  // namespace stereovox

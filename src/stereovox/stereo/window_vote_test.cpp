@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
-#include <random>
 
 #include "stereovox/stereo/judge_matches.h"
 
@@ -47,8 +46,9 @@ TEST(WindowVote, KeepsWhatItHasWhereTooFewAgree) {
   MatchFeatures features = sure_surface(320);
   doubt(features, {2, 2, 20, 12}, 900);
   vote_in_windows(features, long_arms(), {}, kVoters, 1);
-  EXPECT_EQ(features.disparity(8, 12), 900);
-  EXPECT_EQ(features.log_ratio(8, 12), 0);
+  EXPECT_EQ(features.disparity(4, 4), 900) << "32 of 81 agree";
+  EXPECT_EQ(features.log_ratio(4, 4), 0);
+  EXPECT_EQ(features.disparity(8, 12), 900) << "nobody votes";
 }
 
 TEST(WindowVote, DoesNotTouchThoseWhoVote) {
@@ -63,22 +63,6 @@ TEST(WindowVote, PixelsThatWereNotRecordedDoNotVote) {
   doubt(features, {10, 6, 3, 3}, 900);
   vote_in_windows(features, long_arms(), cv::Mat1b(kSize, std::uint8_t{0}), kVoters, 1);
   EXPECT_EQ(features.disparity(7, 11), 900);
-}
-
-TEST(WindowVote, DoesNotDependOnTheNumberOfThreads) {
-  std::mt19937 random(3);
-  MatchFeatures one = sure_surface(320);
-  for (std::int16_t& d : one.disparity) d = static_cast<std::int16_t>(random() % 100);
-  for (std::uint8_t& ratio : one.log_ratio) ratio = static_cast<std::uint8_t>(random() % 20);
-  MatchFeatures many = one;
-  many.disparity = one.disparity.clone();
-  const cv::Mat1s before = one.disparity.clone();
-  VoterParams few = kVoters;
-  few.min_share = 0.1;
-  vote_in_windows(one, long_arms(), {}, few, 1);
-  vote_in_windows(many, long_arms(), {}, few, 8);
-  EXPECT_EQ(cv::countNonZero(one.disparity != many.disparity), 0);
-  EXPECT_GT(cv::countNonZero(one.disparity != before), 0);
 }
 
 }  // namespace
