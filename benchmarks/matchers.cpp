@@ -142,7 +142,7 @@ std::vector<Contender> contenders(const Case& c, const RectifiedPair& pair) {
   return {opencv_contender(kPeer, sgbm(c.disparities, cv::StereoSGBM::MODE_SGBM_3WAY), pair),
           opencv_contender("opencv sgbm", sgbm(c.disparities, cv::StereoSGBM::MODE_SGBM), pair),
           opencv_contender("opencv bm", bm(c.disparities), pair),
-          our_contender<CensusSgmParams>(c, pair)};
+          our_contender<CensusSgmParams>(c, pair), our_contender<AdaptiveWindowParams>(c, pair)};
 }
 
 struct Check {

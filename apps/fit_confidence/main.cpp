@@ -1,6 +1,6 @@
-// Fits the confidence model of census_sgm: fit_confidence FOLDER...
+// Fits the confidence model of a census matcher: fit_confidence MATCHER FOLDER...
 // Each folder holds left.png, right.png and disp_gt.png (KITTI's form) or disp_gt.pfm. Noise that
-// shows no scene at all is learned from, too. Prints the model for stereo/census_sgm.cpp and how
+// shows no scene at all is learned from, too. Prints the model for stereo/<MATCHER>.cpp and how
 // reliable it is on the same pairs.
 #include <fmt/format.h>
 
@@ -9,14 +9,18 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "stereovox/core/error.h"
 #include "stereovox/io/disparity_file.h"
 #include "stereovox/io/image_file.h"
+#include "stereovox/stereo/adaptive_window.h"
 #include "stereovox/stereo/census_sgm.h"
 
 namespace stereovox {
@@ -44,12 +48,28 @@ Row row_of(const PixelFeatures& f, int candidates) {
   return row;
 }
 
-// Where there is no true disparity there is no sample; what is infinite nothing can match.
-void add_samples(const RectifiedPair& pair, const cv::Mat1f& truth_px, int disparity_range_px,
-                 int count, std::vector<Sample>& samples) {
-  CensusSgmParams params;
+// What the matcher finds among this number of disparities.
+using FindFeatures = std::function<MatchFeatures(const RectifiedPair&, int disparity_range_px)>;
+
+template <class Params>
+MatchFeatures find_features(const RectifiedPair& pair, int disparity_range_px) {
+  Params params;
   params.search.disparity_range_px = disparity_range_px;
-  const MatchFeatures f = match_features(pair, params, 1);
+  return match_features(pair, params, 1);
+}
+
+FindFeatures finder_of(const std::string& matcher) {
+  if (matcher == CensusSgmParams::kName) return find_features<CensusSgmParams>;
+  if (matcher == AdaptiveWindowParams::kName) return find_features<AdaptiveWindowParams>;
+  throw UsageError(matcher + ": is no census matcher");
+}
+
+// Where there is no true disparity there is no sample; what is infinite nothing can match.
+void add_samples(const FindFeatures& find, const RectifiedPair& pair, const cv::Mat1f& truth_px,
+                 int disparity_range_px, int count, std::vector<Sample>& samples) {
+  const MatchFeatures f = find(pair, disparity_range_px);
+  CensusSearch search;
+  search.disparity_range_px = disparity_range_px;
   cv::Mat1f variance_px2(truth_px.size());
   for (int v = 0; v < truth_px.rows; ++v) fill_variance_row(f.disparity, v, variance_px2[v]);
   const int step = std::max(1, static_cast<int>(truth_px.total()) / count);
@@ -57,12 +77,12 @@ void add_samples(const RectifiedPair& pair, const cv::Mat1f& truth_px, int dispa
     const int v = i / truth_px.cols, u = i % truth_px.cols;
     const double found_px = static_cast<double>(f.disparity(v, u)) / kStepsPerPixel;
     if (!(truth_px(v, u) > 0.0F) || found_px > u) continue;
-    samples.push_back({row_of(features_at(f, v, u, variance_px2(v, u)), params.search.candidates()),
+    samples.push_back({row_of(features_at(f, v, u, variance_px2(v, u)), search.candidates()),
                        found_px - truth_px(v, u)});
   }
 }
 
-void add_pair(const std::string& folder, std::vector<Sample>& samples) {
+void add_pair(const FindFeatures& find, const std::string& folder, std::vector<Sample>& samples) {
   RectifiedPair pair;
   pair.left = read_gray_image(folder + "/left.png").image;
   pair.right = read_gray_image(folder + "/right.png").image;
@@ -73,11 +93,11 @@ void add_pair(const std::string& folder, std::vector<Sample>& samples) {
   cv::minMaxLoc(truth_px, nullptr, &largest_px);
   // The more disparities are searched, the better is the second best of them.
   for (const int range_px : {static_cast<int>(largest_px) + 1, kMaxCandidates})
-    add_samples(pair, truth_px, range_px, kSamplesPerPair, samples);
+    add_samples(find, pair, truth_px, range_px, kSamplesPerPair, samples);
 }
 
 // Independent noise of `levels` grey values in both images, as fine as pixels or coarser.
-void add_noise(int levels, double blur_px, std::vector<Sample>& samples) {
+void add_noise(const FindFeatures& find, int levels, double blur_px, std::vector<Sample>& samples) {
   constexpr int kSamplesOfNoise = 2000;
   const cv::Size size(320, 240);
   cv::RNG random(static_cast<std::uint64_t>(levels));
@@ -88,7 +108,7 @@ void add_noise(int levels, double blur_px, std::vector<Sample>& samples) {
     if (blur_px > 0) cv::GaussianBlur(image->pixels, image->pixels, {0, 0}, blur_px);
   }
   const cv::Mat1f nothing(size, std::numeric_limits<float>::infinity());
-  add_samples(pair, nothing, CensusSgmParams{}.search.disparity_range_px, kSamplesOfNoise, samples);
+  add_samples(find, pair, nothing, CensusSearch{}.disparity_range_px, kSamplesOfNoise, samples);
 }
 
 double probability(double logit) { return 1.0 / (1.0 + std::exp(-logit)); }
@@ -140,12 +160,13 @@ void print(const std::vector<Bin>& bins, const Row& w) {
                              std::sqrt(bin.squared_px2 / std::max(bin.right, 1)), bin.count);
 }
 
-void run(const std::vector<std::string>& folders) {
+void run(const std::string& matcher, const std::vector<std::string>& folders) {
+  const FindFeatures find = finder_of(matcher);
   std::vector<Sample> samples;
-  for (const std::string& folder : folders) add_pair(folder, samples);
+  for (const std::string& folder : folders) add_pair(find, folder, samples);
   const std::size_t of_pairs = samples.size();
   for (const int levels : {2, 4, 8, 32, 256})
-    for (const double blur_px : {0.0, 0.8, 1.5}) add_noise(levels, blur_px, samples);
+    for (const double blur_px : {0.0, 0.8, 1.5}) add_noise(find, levels, blur_px, samples);
   const Row weights = fit(samples);
   print(bins_of(std::span(samples).first(of_pairs), weights), weights);
 }
@@ -155,8 +176,9 @@ void run(const std::vector<std::string>& folders) {
 
 int main(int argc, char** argv) {
   try {
-    stereovox::run({argv + 1, argv + argc});
-    return argc > 1 ? 0 : 2;
+    if (argc < 3) return 2;
+    stereovox::run(argv[1], {argv + 2, argv + argc});
+    return 0;
   } catch (const std::exception& error) {
     std::cerr << "fit_confidence: error: " << error.what() << "\n";
     return 1;

@@ -6,11 +6,13 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
 #include "stereovox/core/frame.h"
 #include "stereovox/stereo/census_kernels.h"
+#include "stereovox/stereo/census_rows.h"
 
 namespace stereovox {
 
@@ -32,13 +34,6 @@ struct WinnerRow {
   bool operator==(const WinnerRow&) const = default;
 };
 
-// Both images with the borders that a census window needs, repeated from the edge.
-struct CensusPair {
-  cv::Mat1b left, right;  // padded
-  int width_px = 0, height_px = 0;
-};
-CensusPair pad_for_census(const RectifiedPair& pair);
-
 class CensusSweep {
  public:
   // Starts with `first_row`, as if nothing were above it. Refers to `pair`.
@@ -50,7 +45,6 @@ class CensusSweep {
 
  private:
   void enter_row();
-  void read_pixels();
   void read_penalties();
   void clear_entries();
 
@@ -58,9 +52,10 @@ class CensusSweep {
   const SweepParams params_;
   const CensusKernels& kernels_;
   const std::size_t size_index_;  // of the kernels for this number of candidates
+  CensusRows pixels_;
   int y_;
   // Matrices only because they are aligned; each is one row.
-  cv::Mat1b left_census_, right_census_, cost_, sum_, penalties_;
+  cv::Mat1b cost_, sum_, penalties_;
   std::array<cv::Mat1b, 3> paths_above_;
   SweepRow row_;
 };
@@ -69,5 +64,10 @@ class CensusSweep {
 // number at a time. The oracle of the tests.
 std::vector<WinnerRow> sweep_reference(const RectifiedPair& pair, const SweepParams& params,
                                        int first_row, int end_row);
+
+// Moves the winners of a row to the best of them and their two neighbours by the local cost, as
+// WinnerPointers says, plainly. CostAt(x, candidate) is a cost of that row.
+using CostAt = std::function<int(int, int)>;
+void choose_locally_reference(const CostAt& cost, int candidates, WinnerRow& row);
 
 }  // namespace stereovox

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 #include <cstdlib>
 
 #include "stereovox/stereo/census_sweep.h"
@@ -9,49 +8,16 @@ namespace {
 
 constexpr int kFarthest = 255;  // sums end here
 
-int pixel(const cv::Mat1b& image, int x, int y) {
-  return image(std::clamp(y, 0, image.rows - 1), std::clamp(x, 0, image.cols - 1));
-}
-
-// A pixel outside the image has the census of the nearest one inside.
-std::uint32_t census(const cv::Mat1b& image, int x, int y) {
-  x = std::clamp(x, 0, image.cols - 1);
-  std::uint32_t word = 0;
-  int k = 0;
-  for (int dy = -kCensusHalfHeight_px; dy <= 0; ++dy)
-    for (int dx = -kCensusHalfWidth_px; dx <= kCensusHalfWidth_px; ++dx) {
-      if (dy == 0 && dx >= 0) break;
-      const bool is_set = pixel(image, x + dx, y + dy) >= pixel(image, x - dx, y - dy);
-      word |= static_cast<std::uint32_t>(is_set) << k++;
-    }
-  return word;
-}
-
-int mean(int a, int b) { return (a + b + 1) / 2; }
-
-// Clipped change of brightness along the row, smoothed across it.
-int slope(const cv::Mat1b& image, int x, int y) {
-  x = std::clamp(x, 0, image.cols - 1);
-  const auto smooth = [&](int column) {
-    return mean(pixel(image, column, y),
-                mean(pixel(image, column, y - 1), pixel(image, column, y + 1)));
-  };
-  return std::clamp(smooth(x + 1) - smooth(x - 1), -kMaxSlope_gray, kMaxSlope_gray);
-}
-
 using Costs = std::vector<int>;  // of the candidates of one pixel
 
 class Reference {
  public:
   Reference(const RectifiedPair& pair, const SweepParams& params, int first_row, int end_row)
-      : left_(pair.left.pixels),
-        right_(pair.right.pixels),
-        params_(params),
-        first_row_(first_row),
-        end_row_(end_row) {
+      : left_(pair.left.pixels), params_(params), first_row_(first_row), end_row_(end_row) {
     for (int y = first_row; y < end_row; ++y)
       for (int x = 0; x < left_.cols; ++x)
-        for (int c = 0; c < params.candidates; ++c) costs_.push_back(matching_cost(x, y, c));
+        for (int c = 0; c < params.candidates; ++c)
+          costs_.push_back(matching_cost_reference(pair, x, y, params.max_disparity_px() - c));
   }
 
   std::vector<WinnerRow> winners() const {
@@ -62,19 +28,13 @@ class Reference {
     std::vector<WinnerRow> rows;
     for (int y = first_row_; y < end_row_; ++y) {
       rows.push_back(winners_of(sums[y - first_row_]));
-      for (int x = 0; x < left_.cols; ++x) choose_locally(x, y, rows.back());
+      choose_locally_reference([&](int x, int c) { return cost(x, y, c); }, params_.candidates,
+                               rows.back());
     }
     return rows;
   }
 
  private:
-  int matching_cost(int x, int y, int candidate) const {
-    const int x_right = x - params_.max_disparity_px() + candidate;
-    const int ones = std::popcount(census(left_, x, y) ^ census(right_, x_right, y));
-    const int slopes = std::abs(slope(left_, x, y) - slope(right_, x_right, y));
-    return mean(ones, std::min(kSlopeWeight * slopes, kMaxSlopeCost));
-  }
-
   int cost(int x, int y, int candidate) const {
     return costs_[((y - first_row_) * left_.cols + x) * params_.candidates + candidate];
   }
@@ -88,7 +48,8 @@ class Reference {
         const bool starts = x + dx < 0 || x + dx >= left_.cols || y + dy < first_row_;
         const Costs before =
             starts ? Costs(params_.candidates, 0) : path[y + dy - first_row_][x + dx];
-        const int step = std::abs(pixel(left_, x, y) - pixel(left_, x + dx, y + dy));
+        const int step =
+            std::abs(nearest_pixel(left_, x, y) - nearest_pixel(left_, x + dx, y + dy));
         path[y - first_row_][x] = next_on_path(before, x, y, params_.large_penalty[step]);
         for (int c = 0; c < params_.candidates; ++c)
           sums[y - first_row_][x][c] += path[y - first_row_][x][c];
@@ -128,32 +89,36 @@ class Reference {
     return row;
   }
 
-  int local_cost(int x, int y, int candidate) const {
-    if (candidate < 0 || candidate >= params_.candidates) return kNoLocalCost;
-    int sum = 0;
-    for (int dx = -kLocalWidth_px / 2; dx <= kLocalWidth_px / 2; ++dx)
-      sum += cost(std::clamp(x + dx, 0, left_.cols - 1), y, candidate);
-    return sum;
-  }
-
-  void choose_locally(int x, int y, WinnerRow& row) const {
-    const int winner = row.candidate[x];
-    int best = winner;
-    for (const int c : {winner - 1, winner + 1})
-      if (local_cost(x, y, c) < local_cost(x, y, best)) best = c;
-    row.candidate[x] = static_cast<std::uint8_t>(best);
-    row.local_before[x] = static_cast<std::uint8_t>(local_cost(x, y, best - 1));
-    row.local[x] = static_cast<std::uint8_t>(local_cost(x, y, best));
-    row.local_after[x] = static_cast<std::uint8_t>(local_cost(x, y, best + 1));
-  }
-
-  const cv::Mat1b left_, right_;
+  const cv::Mat1b left_;
   const SweepParams params_;
   const int first_row_, end_row_;
   std::vector<int> costs_;  // of each pixel's candidates
 };
 
+int local_cost(const CostAt& cost, int x, int candidate, int width_px, int candidates) {
+  if (candidate < 0 || candidate >= candidates) return kNoLocalCost;
+  int sum = 0;
+  for (int dx = -kLocalWidth_px / 2; dx <= kLocalWidth_px / 2; ++dx)
+    sum += cost(std::clamp(x + dx, 0, width_px - 1), candidate);
+  return sum;
+}
+
 }  // namespace
+
+void choose_locally_reference(const CostAt& cost, int candidates, WinnerRow& row) {
+  const int width = static_cast<int>(row.candidate.size());
+  for (int x = 0; x < width; ++x) {
+    const auto local = [&](int c) { return local_cost(cost, x, c, width, candidates); };
+    const int winner = row.candidate[x];
+    int best = winner;
+    for (const int c : {winner - 1, winner + 1})
+      if (local(c) < local(best)) best = c;
+    row.candidate[x] = static_cast<std::uint8_t>(best);
+    row.local_before[x] = static_cast<std::uint8_t>(local(best - 1));
+    row.local[x] = static_cast<std::uint8_t>(local(best));
+    row.local_after[x] = static_cast<std::uint8_t>(local(best + 1));
+  }
+}
 
 std::vector<WinnerRow> sweep_reference(const RectifiedPair& pair, const SweepParams& params,
                                        int first_row, int end_row) {

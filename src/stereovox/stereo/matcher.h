@@ -8,13 +8,15 @@
 
 #include "stereovox/core/frame.h"
 #include "stereovox/core/image.h"
+#include "stereovox/stereo/adaptive_window.h"
 #include "stereovox/stereo/block_matching.h"
 #include "stereovox/stereo/census_sgm.h"
 #include "stereovox/stereo/semi_global_matching.h"
 
 namespace stereovox {
 
-using MatcherParams = std::variant<SemiGlobalMatchingParams, BlockMatchingParams, CensusSgmParams>;
+using MatcherParams = std::variant<SemiGlobalMatchingParams, BlockMatchingParams, CensusSgmParams,
+                                   AdaptiveWindowParams>;
 
 // The disparity image has the size of the left image. Disparities lie in
 // [min_disparity_px, min_disparity_px + disparity_range_px) and are > 0; 0 means none: no match, an

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <random>
 
+#include "stereovox/stereo/adaptive_window.h"
 #include "stereovox/stereo/census_sgm.h"
 
 namespace stereovox {
@@ -42,16 +43,29 @@ RectifiedPair random_pair(Dice& dice) {
   return pair;
 }
 
-CensusSgmParams random_params(Dice& dice) {
-  CensusSgmParams params;
-  params.search.min_disparity_px = dice.between(-512, 512) / dice.between(1, 30);
-  params.search.disparity_range_px = dice.between(1, kMaxCandidates);
-  params.search.min_confidence = 0.01 * dice.between(0, 60);
-  params.search.left_right_tolerance_px = dice.between(0, 64);
-  params.search.speckle_size_px = dice.between(0, 3);
-  params.search.island_confidence = 0;
+CensusSearch random_search(Dice& dice) {
+  CensusSearch search;
+  search.min_disparity_px = dice.between(-512, 512) / dice.between(1, 30);
+  search.disparity_range_px = dice.between(1, kMaxCandidates);
+  search.min_confidence = 0.01 * dice.between(0, 60);
+  search.left_right_tolerance_px = dice.between(0, 64);
+  search.speckle_size_px = dice.between(0, 3);
+  search.island_confidence = 0;
+  return search;
+}
+
+CensusSgmParams random_sgm(Dice& dice) {
+  CensusSgmParams params{.search = random_search(dice)};
   params.smoothness_small = dice.between(0, 100);
   params.smoothness_large = dice.between(params.smoothness_small + 1, 220);
+  return params;
+}
+
+AdaptiveWindowParams random_windows(Dice& dice) {
+  AdaptiveWindowParams params{.search = random_search(dice)};
+  params.max_arm_px = dice.between(1, kMaxArm_px);
+  params.arm_contrast_gray = dice.between(0, 255) / dice.between(1, 20);
+  params.min_vote_share = 0.01 * dice.between(0, 100);
   return params;
 }
 
@@ -69,19 +83,31 @@ void expect_contract(const DisparityImage& found, const CensusSearch& search) {
     }
 }
 
-class CensusSgmOnRandomInput : public testing::TestWithParam<unsigned> {};
-
-INSTANTIATE_TEST_SUITE_P(Seeds, CensusSgmOnRandomInput, testing::Range(1U, 41U));
-
-TEST_P(CensusSgmOnRandomInput, KeepsItsContractOnAnyNumberOfThreads) {
-  Dice dice(GetParam());
-  const RectifiedPair pair = random_pair(dice);
-  const CensusSgmParams params = random_params(dice);
+template <class Params>
+void expect_contract_on_any_number_of_threads(const RectifiedPair& pair, const Params& params) {
   const DisparityImage found = match(pair, params, 1);
   expect_contract(found, params.search);
-  const DisparityImage again = match(pair, params, 2);
-  EXPECT_EQ(cv::countNonZero(found.disparity_px != again.disparity_px), 0);
-  EXPECT_EQ(cv::countNonZero(found.confidence != again.confidence), 0);
+  for (const int threads : {2, 3, 8}) {
+    const DisparityImage again = match(pair, params, threads);
+    EXPECT_EQ(cv::countNonZero(found.disparity_px != again.disparity_px), 0) << threads;
+    EXPECT_EQ(cv::countNonZero(found.confidence != again.confidence), 0) << threads;
+  }
+}
+
+class RandomInput : public testing::TestWithParam<unsigned> {};
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomInput, testing::Range(1U, 41U));
+
+TEST_P(RandomInput, CensusSgmKeepsItsContractOnAnyNumberOfThreads) {
+  Dice dice(GetParam());
+  const RectifiedPair pair = random_pair(dice);
+  expect_contract_on_any_number_of_threads(pair, random_sgm(dice));
+}
+
+TEST_P(RandomInput, AdaptiveWindowKeepsItsContractOnAnyNumberOfThreads) {
+  Dice dice(GetParam());
+  const RectifiedPair pair = random_pair(dice);
+  expect_contract_on_any_number_of_threads(pair, random_windows(dice));
 }
 
 }  // namespace
