@@ -27,7 +27,7 @@ void write_outputs(const std::filesystem::path& folder, const StereoSequence& se
 // (.png) beside it.
 OccupancyGrid2D write_navigation_map(const std::filesystem::path& yaml_path, const VoxelMap& map,
                                      const SightLines& sight_lines, const WallFaces& wall_faces,
-                                     const Trajectory& trajectory,
-                                     const NavmapParams& params, MapServerMode mode);
+                                     const Trajectory& trajectory, const NavmapParams& params,
+                                     MapServerMode mode);
 
 }  // namespace stereovox
