@@ -10,7 +10,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <ctime>
 #include <functional>
 
 #include "map_engine_world.h"
@@ -18,6 +17,7 @@
 #include "stereovox/occupancy/frame_view.h"
 #include "stereovox/occupancy/integrate.h"
 #include "stereovox/occupancy/map_queries.h"
+#include "timing.h"
 
 namespace stereovox::bench {
 namespace {
@@ -41,35 +41,10 @@ struct Case {
   Depth depth = Depth::clean;
 };
 
-double clock_ms(clockid_t clock) {
-  constexpr double kMsPerS = 1e3, kMsPerNs = 1e-6;
-  timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) * kMsPerS + static_cast<double>(now.tv_nsec) * kMsPerNs;
-}
-
-double quantile(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values[std::min(values.size() - 1,
-                         static_cast<std::size_t>(share * double(values.size())))];
-}
-
 // The compiler must not drop the loop that counted this.
 void keep(std::int64_t count) {
-  static volatile std::int64_t kept = 0;
+  [[maybe_unused]] static volatile std::int64_t kept = 0;
   kept = count;
-}
-
-struct Times {
-  std::vector<double> cpu_ms, wall_ms;
-};
-
-template <class Body>
-void time(Times& times, Body body) {
-  const double cpu = clock_ms(CLOCK_PROCESS_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
-  body();
-  times.cpu_ms.push_back(clock_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu);
-  times.wall_ms.push_back(clock_ms(CLOCK_MONOTONIC) - wall);
 }
 
 struct Accuracy {
@@ -126,15 +101,14 @@ struct Result {
 };
 
 void print(const Case& c, const Result& r, double octomap_ms) {
-  const double cpu_ms = quantile(r.times.cpu_ms, 0.5);
+  const double cpu_ms = median(r.times.cpu_ms);
   fmt::print(
       "{:>4.0f} {:>5} {:>6} {:>3} {:<18} {:>8.1f} {:>8.1f} {:>8.1f} {:>7.1f} {:>6.1f} {:>6.0f} "
       "{:>6.2f}  {:.3f} {:.3f} {:.3f} {:.3f} {:.3f}\n",
       c.voxel_size_m * 1e2, c.pixel_step, c.depth == Depth::clean ? "clean" : "noisy", c.threads,
-      r.name, cpu_ms, quantile(r.times.cpu_ms, 0.95), quantile(r.times.wall_ms, 0.5),
-      octomap_ms / cpu_ms, r.bytes_per_voxel, r.look_up_ns, r.ray_us, r.accuracy.free_recall,
-      r.accuracy.occupied_recall, r.accuracy.near_recall, r.accuracy.thin_recall,
-      r.accuracy.precision);
+      r.name, cpu_ms, quantile(r.times.cpu_ms, 0.95), median(r.times.wall_ms), octomap_ms / cpu_ms,
+      r.bytes_per_voxel, r.look_up_ns, r.ray_us, r.accuracy.free_recall, r.accuracy.occupied_recall,
+      r.accuracy.near_recall, r.accuracy.thin_recall, r.accuracy.precision);
   std::fflush(stdout);
 }
 
@@ -168,7 +142,7 @@ double look_up_ns(LookUp look_up) {
       for (const Eigen::Vector3d& p : places) occupied += look_up(p) == State::occupied ? 1 : 0;
     });
   keep(occupied);
-  return quantile(times.cpu_ms, 0.5) * kNsPerMs / kQueries;
+  return median(times.cpu_ms) * kNsPerMs / kQueries;
 }
 
 // Rays into all directions from where the camera was, up to kMaxRange_m.
@@ -187,7 +161,7 @@ double ray_us(const std::vector<Frame>& frames, Cast cast) {
       }
     });
   keep(hits);
-  return quantile(times.cpu_ms, 0.5) * kUsPerMs / kRays;
+  return median(times.cpu_ms) * kUsPerMs / kRays;
 }
 
 octomap::Pointcloud points_of(const Frame& frame, const Case& c) {
@@ -312,7 +286,7 @@ void run_case(const Options& options, const Case& c, const std::vector<Frame>& f
   double octomap_ms = 0.0;
   if (is_wanted("OctoMap")) {
     const Result octomap = run_octomap(c, frames, truth);
-    octomap_ms = quantile(octomap.times.cpu_ms, 0.5);
+    octomap_ms = median(octomap.times.cpu_ms);
     print(c, octomap, octomap_ms);
   }
   for (const auto& [name, settings] : engines()) {

@@ -5,13 +5,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <ctime>
 
 #include "map_engine_world.h"
 #include "stereovox/core/grid_geometry.h"
 #include "stereovox/occupancy/integrate.h"
-#include "stereovox/occupancy/map_queries.h"
+#include "timing.h"
 
 namespace stereovox::bench {
 namespace {
@@ -21,18 +19,6 @@ struct Options {
   int frames = 20;
   double voxel_m = 0.05;
 };
-
-double cpu_ms() {
-  constexpr double kMsPerS = 1e3, kMsPerNs = 1e-6;
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * kMsPerS + static_cast<double>(now.tv_nsec) * kMsPerNs;
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + std::ssize(values) / 2);
-  return values[values.size() / 2];
-}
 
 // Blocks in layers beside the office, as dense as a map has them.
 void fill(VoxelMap& map, double voxels) {

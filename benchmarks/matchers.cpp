@@ -14,7 +14,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
@@ -23,6 +22,7 @@
 #include <vector>
 
 #include "stereovox/stereo/matcher.h"
+#include "timing.h"
 
 namespace stereovox::bench {
 namespace {
@@ -100,7 +100,7 @@ cv::Mat1f in_pixels(const cv::Mat1s& sixteenths) {
 struct Contender {
   std::string name;
   std::function<cv::Mat1f()> match;  // 0 = no disparity
-  std::vector<double> cpu_ms = {}, wall_ms = {};
+  Times times = {};
 };
 
 Contender opencv_contender(const char* name, cv::Ptr<cv::StereoMatcher> matcher,
@@ -168,26 +168,6 @@ Check check(const cv::Mat1f& found_px, const cv::Mat1f& truth_px) {
   return {100.0 * found / all, 100.0 * bad / std::max(found, 1)};
 }
 
-double clock_ms(clockid_t clock) {
-  constexpr double kMsPerS = 1e3, kMsPerNs = 1e-6;
-  timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) * kMsPerS + static_cast<double>(now.tv_nsec) * kMsPerNs;
-}
-
-void time_once(Contender& contender) {
-  const double cpu = clock_ms(CLOCK_PROCESS_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
-  contender.match();
-  contender.cpu_ms.push_back(clock_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu);
-  contender.wall_ms.push_back(clock_ms(CLOCK_MONOTONIC) - wall);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double median_ratio(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < a.size(); ++i) ratios.push_back(a[i] / b[i]);
@@ -205,16 +185,18 @@ bool run_case(const Case& c, const Options& options) {
     });
   std::vector<Check> checks;
   for (Contender& contender : all) checks.push_back(check(contender.match(), scene.truth_px));
-  for (int round = 0; round < options.rounds; ++round) std::ranges::for_each(all, time_once);
+  for (int round = 0; round < options.rounds; ++round)
+    for (Contender& contender : all) time(contender.times, contender.match);
   const Contender& peer = all.front();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Contender& it = all[i];
+    const Times &times = it.times, &peers = peer.times;
     fmt::print(
         "{:>4} {:>3} {:<18} {:>8.2f} {:>8.2f} {:>8.2f} {:>7.2f} {:>7.2f} {:>8.1f} {:>6.2f}{}\n",
-        c.disparities, c.threads, it.name, median(it.cpu_ms), *std::ranges::min_element(it.cpu_ms),
-        median(it.wall_ms), median_ratio(peer.cpu_ms, it.cpu_ms),
-        median_ratio(peer.wall_ms, it.wall_ms), checks[i].density_percent, checks[i].bad_percent,
-        checks[i].is_right() ? "" : "  WRONG");
+        c.disparities, c.threads, it.name, median(times.cpu_ms),
+        *std::ranges::min_element(times.cpu_ms), median(times.wall_ms),
+        median_ratio(peers.cpu_ms, times.cpu_ms), median_ratio(peers.wall_ms, times.wall_ms),
+        checks[i].density_percent, checks[i].bad_percent, checks[i].is_right() ? "" : "  WRONG");
   }
   std::fflush(stdout);
   return std::ranges::all_of(checks, &Check::is_right);

@@ -91,6 +91,10 @@ TEST(Merge, AMapWithItselfKnowsTheSamePlaces) {
       run_program("merge " + map + " " + map + " --at 100,0,0,90 -o " + quoted(out / "moved.svx"));
   EXPECT_EQ(moved.exit_code, 0) << moved.output;
   EXPECT_NE(voxels(moved.output), voxels(merged.output));
+  const ProgramResult lost =
+      run_program("merge " + map + " " + map + " --at 1e12,0,0,0 -o " + quoted(out / "lost.svx"));
+  EXPECT_EQ(lost.exit_code, 3) << lost.output;
+  EXPECT_THAT(lost.output, HasSubstr("beyond the map's limit"));
 }
 
 TEST(Merge, MapsOfDifferentVoxelSizesAreRefused) {
@@ -105,6 +109,7 @@ TEST(Merge, MapsOfDifferentVoxelSizesAreRefused) {
                   quoted(out / "0.2" / "map.svx") + " -o " + quoted(out / "both.svx"));
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.output, HasSubstr("voxels of 0.1 m and of 0.2 m cannot be merged"));
+  EXPECT_THAT(result.output, HasSubstr((out / "0.2" / "map.svx").string()));
   EXPECT_FALSE(fs::exists(out / "both.svx"));
 }
 

@@ -49,7 +49,8 @@ RectifiedPair rectified_pair(const DisparityOptions& options, const Rectificatio
 // 0 where there is no disparity.
 void write_confidence(const std::string& path, const DisparityImage& disparity) {
   if (disparity.confidence.empty())
-    throw UsageError("--confidence: this matcher has none; take matcher.type=census_sgm");
+    throw UsageError(
+        "--confidence: this matcher has none; take matcher.type=census_sgm or adaptive_window");
   write_pfm(path, disparity.confidence);
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "command.h"
+#include "stereovox/core/error.h"
 #include "stereovox/occupancy/map_maintenance.h"
 #include "stereovox/occupancy/voxel_map_file.h"
 
@@ -27,7 +28,11 @@ ExitCode run(const MergeOptions& options) {
   require_folder_of(options.output);
   VoxelMap map = read_voxel_map(options.first);
   const VoxelMap other = read_voxel_map(options.second);
-  merge(other, pose_of(options.placement), map);
+  try {
+    merge(other, pose_of(options.placement), map);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{} into {}: {}", options.second, options.first, error.what()));
+  }
   map.attachments.clear();  // they tell of one run
   write_voxel_map(options.output, map);
   std::cout << fmt::format("{}: {} voxels of {} m\n", options.output, map.known_voxel_count(),

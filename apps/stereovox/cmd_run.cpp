@@ -151,7 +151,9 @@ ExitCode run(const RunOptions& options) {
   show_remarks(*sequence, remarks_before);
   for (const SkippedPair& pair : sequence->skipped())
     warn(fmt::format("{}: skipped: {}", pair.name, pair.reason));
+  const std::size_t warned = result.warnings.size();
   write_outputs(options.output, *sequence, config, result);
+  for (std::size_t i = warned; i < result.warnings.size(); ++i) warn(result.warnings[i]);
   if (!result.failure.empty())
     throw ResourceError(result.failure + "; what was mapped before is written to " +
                         options.output);

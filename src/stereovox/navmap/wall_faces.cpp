@@ -119,6 +119,7 @@ WallFaces wall_faces_from_bytes(std::string_view bytes, const std::string& sourc
       if (!faces.tiles_.empty() && !(faces.tiles_.rbegin()->first < index)) throw damaged();
       WallFaces::Tile& tile = faces.tiles_[index];
       const std::string_view seen = reader.take(tile.size() / 8);
+      if (std::ranges::all_of(seen, [](char bits) { return bits == 0; })) throw damaged();
       for (std::size_t i = 0; i < tile.size(); ++i) {
         if ((static_cast<unsigned char>(seen[i / 8]) >> (i % 8) & 1U) == 0) continue;
         tile[i].mean_m = reader.number<float>();

@@ -82,6 +82,12 @@ TEST(WallFaces, DamagedBytesAreErrors) {
   for (std::size_t length = 0; length < good.size(); length += 7)
     EXPECT_THROW(wall_faces_from_bytes(good.substr(0, length), "map.svx"), Error) << length;
   EXPECT_THROW(wall_faces_from_bytes(good + "x", "map.svx"), Error);
+  std::string without_faces = good;
+  constexpr std::size_t kFirstMask = 13 + 4 + 2 * 4, kMaskBytes = 32;
+  without_faces.resize(kFirstMask + kMaskBytes);
+  without_faces.replace(13, 4, std::string("\1\0\0\0", 4));
+  without_faces.replace(kFirstMask, kMaskBytes, std::string(kMaskBytes, '\0'));
+  EXPECT_THROW(wall_faces_from_bytes(without_faces, "map.svx"), Error);
   std::string not_a_number = good;
   not_a_number.replace(good.size() - 4, 4, "\xff\xff\xff\x7f");
   EXPECT_THROW(wall_faces_from_bytes(not_a_number, "map.svx"), Error);

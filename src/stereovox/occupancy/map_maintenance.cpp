@@ -77,6 +77,24 @@ std::int64_t shift_between(const VoxelMap& other, const VoxelMap& map) {
   return other.epoch_ns && map.epoch_ns ? (*other.epoch_ns - *map.epoch_ns) / kNsPerMs : 0;
 }
 
+// Throws Error when a voxel of `other` would come to lie where the lattice has no blocks.
+void check_reach(const VoxelMap& other, const SE3& T_map_other) {
+  const std::optional<VoxelBounds> bounds = other.bounds();
+  if (!bounds) return;
+  const double size_m = other.voxel_size_m();
+  const double limit_m = size_m * kBlockSide * kMaxBlockCoordinate;
+  for (const int x : {bounds->min.x(), bounds->max.x()})
+    for (const int y : {bounds->min.y(), bounds->max.y()})
+      for (const int z : {bounds->min.z(), bounds->max.z()}) {
+        const Eigen::Vector3d p = T_map_other * voxel_center_of(size_m, {x, y, z});
+        if (!(p.cwiseAbs().maxCoeff() < limit_m))
+          throw Error(
+              fmt::format("a voxel moved to ({:g}, {:g}, {:g}) m is beyond the map's limit of "
+                          "{:.0f} m from the origin",
+                          p.x(), p.y(), p.z(), limit_m));
+      }
+}
+
 // The most occupied state, and of count, time and ignorance those of the voxel that was seen most.
 Voxel coarse(const Voxel& a, const Voxel& b) {
   if (!is_known(a)) return b;
@@ -106,6 +124,7 @@ void merge(const VoxelMap& other, const SE3& T_map_other, VoxelMap& map) {
   if (other.voxel_size_m() != map.voxel_size_m())
     throw Error(fmt::format("maps with voxels of {} m and of {} m cannot be merged",
                             map.voxel_size_m(), other.voxel_size_m()));
+  check_reach(other, T_map_other);
   if (!map.epoch_ns) map.epoch_ns = other.epoch_ns;
   const std::int64_t shift_ms = shift_between(other, map);
   other.for_each_block([&](const VoxelBlock& block) {

@@ -90,6 +90,15 @@ TEST(MapMaintenance, MergingWithAnEmptyMapMovesTheVoxels) {
   EXPECT_TRUE(bytes_of(back) == bytes_of(other));
 }
 
+TEST(MapMaintenance, AMapThatWouldLeaveTheLatticeIsNotMerged) {
+  const VoxelMap other = scattered_map(3, 100);
+  VoxelMap map = scattered_map(4, 100);
+  const std::string before = bytes_of(map);
+  for (const double x_m : {1e6, -1e300, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(merge(other, {Eigen::Quaterniond::Identity(), {x_m, 0, 0}}, map), Error) << x_m;
+  EXPECT_TRUE(bytes_of(map) == before);
+}
+
 TEST(MapMaintenance, MergedVoxelsWeighTheirObservations) {
   VoxelMap map(kSize_m), other(kSize_m), coarser(0.2);
   map.epoch_ns = 10'000'000'000;

@@ -35,6 +35,7 @@ BuildResult build_maps(StereoSequence& sequence, const PipelineConfig& config,
   }
 
   BuildResult result = builder.finish();
+  for (const std::string& warning : result.warnings) progress.warn(warning);
   result.failure = failure;
   if (!frames.warning().empty()) result.warnings.push_back(frames.warning());
   result.was_stopped = was_stopped;

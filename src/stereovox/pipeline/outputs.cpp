@@ -68,8 +68,8 @@ void attach(const WallFaces& faces, VoxelMap& map, std::vector<std::string>& war
   else
     warnings.push_back(
         fmt::format("map.svx is written without wall faces, which take {} of at most {} bytes: "
-                    "other navigation "
-                    "maps made of it will place walls by contrast alone",
+                    "other "
+                    "navigation maps made of it will place walls by contrast alone",
                     bytes.size(), kMaxBytes));
 }
 

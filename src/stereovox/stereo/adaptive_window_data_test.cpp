@@ -2,15 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "stereovox/stereo/adaptive_window.h"
+#include "stereovox/stereo/stereo_pairs_for_test.h"
 
 namespace stereovox {
 namespace {
-
-constexpr double kTruthStep_px = 1.0 / 256.0;  // KITTI's form
 
 struct DataPair {
   const char* name;
@@ -32,33 +29,27 @@ struct Tally {
 };
 
 // Pixels whose truth is known.
-Tally tally_of(const DisparityImage& found, const cv::Mat1w& truth) {
+Tally tally_of(const DisparityImage& found, const cv::Mat1f& truth_px) {
   Tally tally;
   for (int v = 0; v < found.height(); ++v)
     for (int u = 0; u < found.width(); ++u) {
-      if (truth(v, u) == 0) continue;
+      if (truth_px(v, u) == 0.0F) continue;
       ++tally.known;
       if (!(found.disparity_px(v, u) > 0.0F)) continue;
       ++tally.found;
       tally.confidence += found.confidence(v, u);
-      const double error_px = found.disparity_px(v, u) - truth(v, u) * kTruthStep_px;
+      const double error_px = found.disparity_px(v, u) - truth_px(v, u);
       tally.bad += std::abs(error_px) > kRightWithin_px ? 1 : 0;
     }
   return tally;
 }
 
 TEST_P(AdaptiveWindowOnPairs, IsDenseAndRightAndKnowsHowSureItMayBe) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::path(STEREOVOX_SHARED_DIR) / "data/stereo_pairs" / GetParam().name;
-  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not there";
-  RectifiedPair pair;
-  pair.left.pixels = cv::imread(folder / "left.png", cv::IMREAD_GRAYSCALE);
-  pair.right.pixels = cv::imread(folder / "right.png", cv::IMREAD_GRAYSCALE);
-  const cv::Mat truth = cv::imread(folder / "disp_gt.png", cv::IMREAD_ANYDEPTH);
-  ASSERT_EQ(truth.type(), CV_16U);
+  const auto read = read_pair_with_truth(GetParam().name);
+  if (!read) GTEST_SKIP() << folder_of_pair(GetParam().name) << " is not there";
   AdaptiveWindowParams params;
   params.search.disparity_range_px = GetParam().disparity_range_px;
-  const Tally tally = tally_of(match(pair, params, 1), truth);
+  const Tally tally = tally_of(match(read->pair, params, 1), read->truth_px);
   const double bad = tally.bad / tally.found;
   EXPECT_GT(tally.found / tally.known, GetParam().min_density);
   EXPECT_LT(bad, GetParam().max_bad);

@@ -3,16 +3,14 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "stereovox/stereo/census_sgm.h"
+#include "stereovox/stereo/stereo_pairs_for_test.h"
 
 namespace stereovox {
 namespace {
 
 constexpr int kBins = 10;
-constexpr double kTruthStep_px = 1.0 / 256.0;  // KITTI's form
 
 struct Bin {
   double count = 0, confidence = 0, right = 0, variance_px2 = 0, squared_px2 = 0;
@@ -31,11 +29,11 @@ INSTANTIATE_TEST_SUITE_P(LeftOut, ConfidenceOfCensusSgm,
                                          LeftOutPair{"aloe_full", 224, 0.03}),
                          [](const auto& pair) { return std::string(pair.param.name); });
 
-std::array<Bin, kBins> bins_of(const DisparityImage& found, const cv::Mat& truth) {
+std::array<Bin, kBins> bins_of(const DisparityImage& found, const cv::Mat1f& truth_image_px) {
   std::array<Bin, kBins> bins;
   for (int v = 0; v < found.height(); ++v)
     for (int u = 0; u < found.width(); ++u) {
-      const double truth_px = truth.at<std::uint16_t>(v, u) * kTruthStep_px;
+      const double truth_px = truth_image_px(v, u);
       if (!(found.disparity_px(v, u) > 0.0F) || truth_px == 0.0) continue;
       const double confidence = found.confidence(v, u), sigma_px = found.sigma_px(v, u);
       const double error_px = found.disparity_px(v, u) - truth_px;
@@ -51,26 +49,20 @@ std::array<Bin, kBins> bins_of(const DisparityImage& found, const cv::Mat& truth
 }
 
 TEST_P(ConfidenceOfCensusSgm, IsRightAboutPairsThatWereLeftOutOfTheFit) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::path(STEREOVOX_SHARED_DIR) / "data/stereo_pairs" / GetParam().name;
-  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not there";
-  RectifiedPair pair;
-  pair.left.pixels = cv::imread(folder / "left.png", cv::IMREAD_GRAYSCALE);
-  pair.right.pixels = cv::imread(folder / "right.png", cv::IMREAD_GRAYSCALE);
-  const cv::Mat truth = cv::imread(folder / "disp_gt.png", cv::IMREAD_ANYDEPTH);
-  ASSERT_EQ(truth.type(), CV_16U);
+  const auto read = read_pair_with_truth(GetParam().name);
+  if (!read) GTEST_SKIP() << folder_of_pair(GetParam().name) << " is not there";
   CensusSgmParams params;
   params.search.disparity_range_px = GetParam().disparity_range_px;
   Bin all;
   double off = 0, too_sure = 0;
-  for (const Bin& bin : bins_of(match(pair, params, 1), truth)) {
+  for (const Bin& bin : bins_of(match(read->pair, params, 1), read->truth_px)) {
     off += std::abs(bin.confidence - bin.right);
     too_sure += bin.confidence - bin.right;
     all.count += bin.count;
     all.variance_px2 += bin.variance_px2;
     all.squared_px2 += bin.squared_px2;
   }
-  EXPECT_GT(all.count, 0.7 * cv::countNonZero(truth));
+  EXPECT_GT(all.count, 0.7 * cv::countNonZero(read->truth_px));
   EXPECT_LE(off / all.count, GetParam().max_calibration_error);
   EXPECT_LE(too_sure / all.count, 0.03) << "more is promised than is kept";
   const double sigma_ratio = std::sqrt(all.squared_px2 / all.variance_px2);

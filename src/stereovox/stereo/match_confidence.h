@@ -1,6 +1,6 @@
 // How probably a disparity is right, and how exact it then is. The model is a logistic regression
-// on four features, three of them after Hu and Mordohai (PAMI 2012); apps/fit_confidence fits the
-// numbers on image pairs with truth.
+// on four features of a pixel, three of them after Hu and Mordohai (PAMI 2012), and the number of
+// disparities searched; apps/fit_confidence fits the numbers on image pairs with truth.
 #pragma once
 
 #include <array>
