@@ -16,7 +16,7 @@ constexpr int kMinStripeHeight_px = 60;
 // Whoever votes must be found again from the right image, and stand out.
 constexpr VoterParams kVoters = {.min_log_ratio = 8, .max_left_right = kStepsPerPixel};
 
-// Fitted by apps/fit_confidence to cones, motorcycle and six frames of a rendered room.
+// Fitted by scripts/fit_confidence to cones, motorcycle and six frames of a rendered room.
 constexpr ConfidenceModel kModel = {
     .bias = 1.479,
     .ratio = 9.257,

@@ -17,8 +17,8 @@ namespace {
 constexpr int kStripeHeight_px = 120;
 constexpr int kWarmUpRows = 12;
 
-// Fitted by apps/fit_confidence to cones, motorcycle and six frames of a rendered room. The last
-// three bins were not reached.
+// Fitted by scripts/fit_confidence to cones, motorcycle and six frames of a rendered room. The last
+// bin, which too few samples reach, has the numbers of the one before.
 constexpr ConfidenceModel kModel = {
     .bias = 2.685,
     .ratio = 1.778,
