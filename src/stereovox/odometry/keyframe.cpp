@@ -109,6 +109,14 @@ std::optional<Observation> sight(const LevelView& view, const Keyframe& keyframe
 
 }  // namespace
 
+double median_depth_m(const RectifiedCamera& camera, const FeatureSet& points) {
+  std::vector<double> depths;
+  for (const Feature& point : points.features) depths.push_back(camera.depth_m(point.disparity_px));
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
+}
+
 KeyframeLevel make_keyframe_level(const RectifiedPair& pair, FeatureSet features,
                                   const AlignmentParams& params) {
   for (Feature& point : features.features) {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "stereovox/core/se3.h"
+#include "stereovox/odometry/direct_alignment.h"
 #include "stereovox/odometry/feature_matching.h"
 #include "stereovox/odometry/motion_estimate.h"
 
@@ -21,7 +22,11 @@ struct Keyframe {
   int segment = 0;
   SE3 T_segment_camera = {};
   std::vector<KeyframeLevel> levels = {};
+  std::vector<SurfaceLevel> surfaces = {};  // halved once, twice, ...
 };
+
+// Of the points, of which there is at least one.
+double median_depth_m(const RectifiedCamera& camera, const FeatureSet& points);
 
 struct AlignmentParams {
   int max_points = 150;

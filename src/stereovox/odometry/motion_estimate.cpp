@@ -29,16 +29,6 @@ Eigen::Vector3d weighted_mean(std::span<const Eigen::Vector3d> points,
   return sum / total;
 }
 
-// d(u_left, v, u_right) / d(point).
-Eigen::Matrix3d projection_jacobian(const RectifiedCamera& camera, const Eigen::Vector3d& p) {
-  const double iz = 1.0 / p.z(), fx = camera.pinhole.fx_px, fy = camera.pinhole.fy_px;
-  Eigen::Matrix3d J;
-  J << fx * iz, 0.0, -fx * p.x() * iz * iz,  //
-      0.0, fy * iz, -fy * p.y() * iz * iz,   //
-      fx * iz, 0.0, -fx * (p.x() - camera.baseline_m) * iz * iz;
-  return J;
-}
-
 struct Linearized {
   Eigen::Vector3d residual_px;
   Eigen::Matrix<double, 3, 6> jacobian;
@@ -190,6 +180,15 @@ SE3 closed_form_motion(std::span<const Eigen::Vector3d> from, std::span<const Ei
 Eigen::Vector3d project_stereo(const RectifiedCamera& camera, const Eigen::Vector3d& p_camera) {
   const Eigen::Vector2d left = project(camera.pinhole, p_camera);
   return {left.x(), left.y(), left.x() - camera.disparity_px(p_camera.z())};
+}
+
+Eigen::Matrix3d projection_jacobian(const RectifiedCamera& camera, const Eigen::Vector3d& p) {
+  const double iz = 1.0 / p.z(), fx = camera.pinhole.fx_px, fy = camera.pinhole.fy_px;
+  Eigen::Matrix3d J;
+  J << fx * iz, 0.0, -fx * p.x() * iz * iz,  //
+      0.0, fy * iz, -fy * p.y() * iz * iz,   //
+      fx * iz, 0.0, -fx * (p.x() - camera.baseline_m) * iz * iz;
+  return J;
 }
 
 MotionEstimate refine_motion(const RectifiedCamera& camera,

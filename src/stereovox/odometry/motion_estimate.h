@@ -52,6 +52,9 @@ struct MotionEstimate {
 // Pixels u_left, v and u_right of a point with z > 0.
 Eigen::Vector3d project_stereo(const RectifiedCamera& camera, const Eigen::Vector3d& p_camera);
 
+// d(u_left, v, u_right) / d(point).
+Eigen::Matrix3d projection_jacobian(const RectifiedCamera& camera, const Eigen::Vector3d& p_camera);
+
 // The most likely place of the camera near `start`: robust Gauss-Newton on the reprojection error,
 // weighted by the errors of pixels and points; then without the outliers again, until they stay the
 // same. The covariance is sigma^2 (J^T W J)^-1 with the scatter sigma^2 of the residuals, but at

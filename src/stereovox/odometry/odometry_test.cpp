@@ -8,92 +8,10 @@
 #include <random>
 
 #include "stereovox/core/error.h"
-#include "stereovox/core/timestamp.h"
+#include "stereovox/odometry/room_for_test.h"
 
 namespace stereovox {
 namespace {
-
-const RectifiedCamera kCamera{{240, 160, 200.0, 200.0, 119.5, 79.5}, 0.12};
-constexpr double kFramesPerSecond = 10.0;
-
-// --- A room with textured walls, floor and ceiling around the origin; exact truth. ---
-
-double lattice(int x, int y, int z) {
-  std::uint32_t h = static_cast<std::uint32_t>(x) * 73856093U ^
-                    static_cast<std::uint32_t>(y) * 19349663U ^
-                    static_cast<std::uint32_t>(z) * 83492791U;
-  h = (h ^ (h >> 13)) * 0x5bd1e995U;
-  return static_cast<double>((h ^ (h >> 15)) & 0xffffU) / 65535.0;
-}
-
-// Smooth noise in [0, 1] with features of the size `cell_m`.
-double texture(const Eigen::Vector3d& p, double cell_m) {
-  const Eigen::Vector3d q = p / cell_m;
-  const Eigen::Vector3i i = q.array().floor().cast<int>();
-  const Eigen::Array3d t = (q - i.cast<double>()).array();
-  const Eigen::Array3d s = t * t * (3.0 - 2.0 * t);
-  double sum = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Array3i bit(corner & 1, corner >> 1 & 1, corner >> 2);
-    const Eigen::Array3d w = bit.cast<double>() * s + (1 - bit.cast<double>()) * (1.0 - s);
-    sum += w.prod() * lattice(i.x() + bit.x(), i.y() + bit.y(), i.z() + bit.z());
-  }
-  return sum;
-}
-
-// How far along a ray from inside the room its wall is.
-double distance_to_wall(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
-  const Eigen::Array3d half_size_m(3.0, 1.5, 4.0);
-  const Eigen::Array3d wall = direction.array().sign() * half_size_m;
-  return ((wall - from.array()) / direction.array()).minCoeff();
-}
-
-struct View {
-  cv::Mat1b brightness = cv::Mat1b(kCamera.pinhole.height, kCamera.pinhole.width);
-  cv::Mat1f depth_m = cv::Mat1f(kCamera.pinhole.height, kCamera.pinhole.width);
-};
-
-View view_from(const SE3& T_world_camera, std::mt19937& random) {
-  std::normal_distribution<double> noise(0.0, 1.0);
-  View view;
-  for (int v = 0; v < view.brightness.rows; ++v)
-    for (int u = 0; u < view.brightness.cols; ++u) {
-      const auto& pinhole = kCamera.pinhole;
-      const Eigen::Vector3d ray =
-          T_world_camera.rotation * Eigen::Vector3d((u - pinhole.cx_px) / pinhole.fx_px,
-                                                    (v - pinhole.cy_px) / pinhole.fy_px, 1.0);
-      const double depth_m = distance_to_wall(T_world_camera.translation, ray);
-      const Eigen::Vector3d p = T_world_camera.translation + depth_m * ray;
-      const double value = 30.0 + 110.0 * texture(p, 0.3) + 90.0 * texture(p, 0.12);
-      view.brightness(v, u) = cv::saturate_cast<std::uint8_t>(value + noise(random));
-      view.depth_m(v, u) = static_cast<float>(depth_m);
-    }
-  return view;
-}
-
-struct Shot {
-  RectifiedPair pair;
-  DisparityImage disparity;
-};
-
-// Noise of image and disparity differs with the number of the frame.
-Shot shot_from(const SE3& T_world_camera, int frame) {
-  std::mt19937 random(static_cast<unsigned>(frame));
-  const View left = view_from(T_world_camera, random);
-  const SE3 T_left_right{Eigen::Quaterniond::Identity(), {kCamera.baseline_m, 0, 0}};
-  const View right = view_from(T_world_camera * T_left_right, random);
-  Shot shot;
-  shot.pair.stamp_ns = ns_from_seconds(frame / kFramesPerSecond);
-  shot.pair.left.pixels = left.brightness;
-  shot.pair.right.pixels = right.brightness;
-  shot.disparity = {cv::Mat1f(left.depth_m.size()), cv::Mat1f(left.depth_m.size(), 0.35F)};
-  std::normal_distribution<float> noise(0.0F, 0.2F);
-  for (int v = 0; v < left.depth_m.rows; ++v)
-    for (int u = 0; u < left.depth_m.cols; ++u)
-      shot.disparity.disparity_px(v, u) =
-          static_cast<float>(kCamera.disparity_px(left.depth_m(v, u))) + noise(random);
-  return shot;
-}
 
 Shot dark(Shot shot) {
   shot.pair.left.pixels = 3;
@@ -299,12 +217,40 @@ TEST(Odometry, WeakTextureIsTrackedOnHalvedImages) {
   EXPECT_GT(halved, kFrames / 2);
 }
 
+// To the right until only a wall without corners is in view, and back.
+TEST(Odometry, AWallWithoutCornersIsPassedByItsClouds) {
+  constexpr double kStep_rad = 0.1, kCloudTolerance_m = 0.15, kCloudTolerance_rad = 0.03;
+  constexpr int kFrames = 26;
+  const auto looking_right = [](int frame) {
+    Vector6d turn = Vector6d::Zero();
+    turn[4] = kStep_rad * std::min(frame, kFrames - frame);
+    return exp(turn);
+  };
+  OdometryParams params;
+  params.direct.min_correlation = 1.0;
+  Odometry odometry(kCamera, {}), without(kCamera, params);
+  int by_clouds = 0, lost_without = 0;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const Shot shot = shot_from(looking_right(frame), frame, {.plain_from_x_m = 0.7});
+    const OdometryResult result = track(odometry, shot);
+    ASSERT_EQ(result.status, OdometryStatus::tracked) << frame << ": " << result.reason;
+    EXPECT_EQ(result.segment, 0);
+    by_clouds += frame > 0 && result.inliers == 0 ? 1 : 0;
+    lost_without += track(without, shot).status == OdometryStatus::lost ? 1 : 0;
+    const Vector6d error = log(inverse(looking_right(frame)) * result.T_segment_camera);
+    EXPECT_LT(error.head<3>().norm(), kCloudTolerance_m) << frame;
+    EXPECT_LT(error.tail<3>().norm(), kCloudTolerance_rad) << frame;
+  }
+  EXPECT_GT(by_clouds, 2);
+  EXPECT_GT(lost_without, 2);
+}
+
 TEST(Odometry, KeepsNoMoreKeyframesThanAllowedAndStillTracks) {
   OdometryParams params;
-  params.keyframes.stored_count = 1;
+  params.keyframes.memory_mb = 1.0;  // a fifth of what the frames below need
   params.keyframes.max_shift = 0.001;
   Odometry odometry(kCamera, params);
-  for (int frame = 0; frame < 10; ++frame) {
+  for (int frame = 0; frame < 40; ++frame) {
     const OdometryResult result = track(odometry, shot_from(on_the_way(frame), frame));
     expect_right(result, frame);
     EXPECT_TRUE(result.is_keyframe);
