@@ -57,6 +57,11 @@ Tracked track(StereoSequence& sequence, const PipelineConfig& config, bool verbo
     else
       tracked.segments[motion.segment].push_back({frame->pair.stamp_ns, motion.T_segment_camera});
   }
+  if (config.refine) {
+    tracked.segments.clear();
+    for (const PlacedFrame& frame : odometry.placed_frames())
+      tracked.segments[frame.segment].push_back({frame.stamp_ns, frame.T_segment_camera});
+  }
   return tracked;
 }
 

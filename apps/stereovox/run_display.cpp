@@ -28,6 +28,10 @@ std::string time_to_go(const Progress& p) {
 }
 
 std::string line(const Progress& p) {
+  if (p.stage == RunStage::mapping)
+    return fmt::format("mapped {}/{}  {:.1f} fps  map {:.0f} ms  {} blocks  {} to go", p.frame,
+                       p.frames, frames_per_second(p), p.occupancy_ms, p.voxel_blocks,
+                       time_to_go(p));
   return fmt::format(
       "frame {}/{}  {:.1f} fps  match {:.0f} ms  odometry {:.0f} ms  map {:.0f} ms  {} inliers  {} "
       " "
@@ -37,7 +41,8 @@ std::string line(const Progress& p) {
 }
 
 std::string json_line(const Progress& p) {
-  return nlohmann::ordered_json{{"frame", p.frame},
+  return nlohmann::ordered_json{{"stage", p.stage == RunStage::tracking ? "tracking" : "mapping"},
+                                {"frame", p.frame},
                                 {"frames", p.frames},
                                 {"fps", frames_per_second(p)},
                                 {"match_ms", p.match_ms},

@@ -66,7 +66,7 @@ std::string render_key(const RecordingRequest& request) {
 
 std::string match_key(const RecordingRequest& request) {
   return fmt::format("matcher {}\n{}", kMatcherVersion,
-                     text_of(request.pipeline, "rectification;matcher;odometry;"));
+                     text_of(request.pipeline, "rectification;matcher;odometry;refine;"));
 }
 
 fs::path disparity_path(const fs::path& folder, int frame) {
@@ -92,7 +92,8 @@ bool render_into(const fs::path& folder, const Simulation& simulation,
   return true;
 }
 
-// Poses of the first segment in the world of the true first pose.
+// Poses of the first segment in the world of the true first pose; with `refine`, of all that could
+// be tied to it.
 Trajectory match_into(const fs::path& folder, StereoSequence& sequence, const SE3& T_world_first,
                       const PipelineConfig& config, const RecordingProgress& progress) {
   const Rectifier rectifier(sequence.rig(), config.rectification);
@@ -104,11 +105,15 @@ Trajectory match_into(const fs::path& folder, StereoSequence& sequence, const SE
   for (int i = 0; const std::optional<MatchedFrame> frame = frames.next(); ++i) {
     if (progress.should_stop()) return {};
     const OdometryResult motion = odometry.track(frame->pair, frame->disparity);
-    if (motion.status == OdometryStatus::tracked && motion.segment == 0)
+    if (!config.refine && motion.status == OdometryStatus::tracked && motion.segment == 0)
       estimated.push_back({frame->pair.stamp_ns, T_world_first * motion.T_segment_camera});
     write_disparity(disparity_path(folder, i), frame->disparity);
     write_disparity(sigma_path(folder, i), {frame->disparity.sigma_px, {}});
   }
+  if (!config.refine) return estimated;
+  for (const PlacedFrame& frame : odometry.placed_frames())
+    if (frame.segment == 0)
+      estimated.push_back({frame.stamp_ns, T_world_first * frame.T_segment_camera});
   return estimated;
 }
 

@@ -41,8 +41,8 @@ int open_nameless(const fs::path& folder) {
 
 }  // namespace
 
-TileStore::TileStore(const fs::path& folder)
-    : name_("tile store in " + folder.string()), descriptor_(open_nameless(folder)) {
+TileStore::TileStore(const fs::path& folder, const std::string& what)
+    : name_(what + " in " + folder.string()), descriptor_(open_nameless(folder)) {
   if (descriptor_ < 0) fail(name_, "cannot be made", errno);
 }
 

@@ -19,8 +19,9 @@ struct StoredPlace {
 // Not for several threads at once.
 class TileStore {
  public:
-  // Opens a nameless file in the folder, which must exist. Throws ResourceError.
-  explicit TileStore(const std::filesystem::path& folder);
+  // Opens a nameless file in the folder, which must exist; errors call it `what`. Throws
+  // ResourceError.
+  explicit TileStore(const std::filesystem::path& folder, const std::string& what = "tile store");
   TileStore(const TileStore&) = delete;
   TileStore& operator=(const TileStore&) = delete;
   ~TileStore();

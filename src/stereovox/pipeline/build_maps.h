@@ -51,12 +51,17 @@ struct BuildResult {
   double tracked_percent() const { return frames == 0 ? 0.0 : 100.0 * tracked / frames; }
 };
 
+// With refined poses frames are first tracked, all of them, and then mapped; otherwise both at
+// once.
+enum class RunStage { tracking, mapping };
+
 // The state after a frame.
 struct Progress {
+  RunStage stage = RunStage::tracking;
   int frame = 0, frames = 0;  // done, in all
   bool is_tracked = false;
   int inliers = 0;
-  double elapsed_s = 0.0;
+  double elapsed_s = 0.0;                                        // in this stage
   double match_ms = 0.0, odometry_ms = 0.0, occupancy_ms = 0.0;  // of this frame
   std::size_t voxel_blocks = 0;
 };
@@ -67,8 +72,9 @@ struct ProgressSink {
   std::function<bool()> should_stop = [] { return false; };  // asked before each frame
 };
 
-// With a memory limit, tiles out of view wait in a nameless file in `store_folder`. When that fails
-// the run ends there and `failure` says why; what was mapped is in the result.
+// With `refine`, disparities wait in a nameless file in `store_folder` until all frames are
+// tracked, and with a memory limit so do tiles out of view. When that fails the run ends there and
+// `failure` says why; what was mapped is in the result.
 //
 // Poses come from odometry, or from `given_poses` of the left camera as calibrated; a frame that
 // has none there counts as lost. Throws Error for input that cannot be used.

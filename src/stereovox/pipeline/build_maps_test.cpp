@@ -108,6 +108,39 @@ TEST(BuildMaps, StopsWhenAskedAndKeepsWhatThereIs) {
   EXPECT_EQ(result.segments[0].map.frames_integrated, 3U);
 }
 
+TEST(BuildMaps, MapsInASecondPassUnlessPosesAreNotRefined) {
+  for (const bool refine : {true, false}) {
+    PipelineConfig config = config_for(6);
+    config.refine = refine;
+    const auto sequence = demo(config);
+    int tracking = 0, mapping = 0;
+    std::size_t blocks_while_tracking = 0;
+    ProgressSink sink;
+    sink.frame_done = [&](const Progress& progress) {
+      ++(progress.stage == RunStage::tracking ? tracking : mapping);
+      if (progress.stage == RunStage::tracking) blocks_while_tracking = progress.voxel_blocks;
+    };
+    const BuildResult result = build_maps(*sequence, config, std::nullopt, sink);
+    EXPECT_EQ(result.segments[0].map.frames_integrated, 6U);
+    EXPECT_EQ(tracking, 6);
+    EXPECT_EQ(mapping, refine ? 6 : 0);
+    EXPECT_EQ(blocks_while_tracking > 0, !refine);
+  }
+}
+
+TEST(BuildMaps, StoppedInTheSecondPassItKeepsWhatIsMapped) {
+  const PipelineConfig config = config_for(8);
+  const auto sequence = demo(config);
+  int mapped = 0;
+  ProgressSink sink;
+  sink.frame_done = [&](const Progress& p) { mapped += p.stage == RunStage::mapping ? 1 : 0; };
+  sink.should_stop = [&] { return mapped == 6; };
+  const BuildResult result = build_maps(*sequence, config, std::nullopt, sink);
+  EXPECT_TRUE(result.was_stopped);
+  EXPECT_EQ(result.tracked, 8);
+  EXPECT_EQ(result.segments[0].trajectory.size(), 6U);
+}
+
 TEST(BuildMaps, AnErrorOfTheFrontHalfReachesTheCaller) {
   const PipelineConfig config = config_for(12);
   class Failing : public Blinking {

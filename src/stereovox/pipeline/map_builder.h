@@ -1,57 +1,57 @@
-// The back half of the line: a pose for each matched frame, and the maps that follow from them.
+// The back half of the line: the maps that follow from frames whose place is known.
 #pragma once
 
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "stereovox/pipeline/build_maps.h"
-#include "stereovox/pipeline/matched_frames.h"
 
 namespace stereovox {
 
+struct LocatedFrame {
+  std::int64_t stamp_ns = 0;
+  DisparityImage disparity;
+  int segment = 0;
+  SE3 T_segment_camera;
+};
+
 class MapBuilder {
  public:
-  MapBuilder(const Rectifier& rectifier, const PipelineConfig& config,
-             const std::optional<Trajectory>& given_poses,
+  // With `has_given_poses` the frame of the segment is the world of those poses.
+  MapBuilder(const RectifiedCamera& camera, const PipelineConfig& config, bool has_given_poses,
              const std::filesystem::path& store_folder);
 
   // Frames in order of time. Throws ResourceError when the tile store fails; the maps then hold all
   // that is left, and finish() may be called.
-  Progress add(MatchedFrame frame);
+  void add(LocatedFrame frame, StageTimes& times);
 
-  // Maps what still waits. Call it once, after the last frame.
-  BuildResult finish();
+  // Maps what still waits; most frames first, at least one. What was lost of them is added to the
+  // warnings. Call it once, after the last frame.
+  std::vector<MapSegment> finish(StageTimes& times, std::vector<std::string>& warnings);
+
+  std::size_t block_count(int segment) const;
 
  private:
-  struct Located {
-    MatchedFrame frame;
-    SE3 T_segment_camera;
-  };
   // Its first frames wait until the floor is known.
   struct GrowingSegment {
-    std::vector<Located> waiting;
+    std::vector<LocatedFrame> waiting;
     std::optional<MapSegment> placed;
   };
 
-  OdometryResult locate(const MatchedFrame& frame);
-  OdometryResult locate_by_given_poses(std::int64_t stamp_ns) const;
-  void note_lost(const MatchedFrame& frame, const std::string& reason);
-  void add_to_segment(int id, Located located);
-  void place(int id, GrowingSegment& segment);
+  void place(int id, GrowingSegment& segment, StageTimes& times);
   MapSegment empty_segment(int id, const WorldFrame& world) const;
-  void map(const Located& located, MapSegment& segment);
+  void map(const LocatedFrame& frame, MapSegment& segment, StageTimes& times);
   void keep_within_memory(MapSegment& current);
 
-  const Rectifier& rectifier_;
+  const RectifiedCamera camera_;
   const PipelineConfig config_;
-  const std::optional<Trajectory>& given_poses_;
+  const bool has_given_poses_;
   const std::filesystem::path store_folder_;
-  Odometry odometry_;
   std::map<int, GrowingSegment> segments_;
-  BuildResult result_;
-  bool is_lost_ = false, limits_memory_;
+  bool limits_memory_;
 };
 
 }  // namespace stereovox

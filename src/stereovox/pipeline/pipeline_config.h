@@ -24,6 +24,7 @@ struct PipelineConfig {
   int threads = 0;
   double min_tracked_percent = 50.0;
   double memory_limit_mb = 0.0;
+  bool refine = true;
   SequenceParams dataset;
   RectificationParams rectification;
   MatcherParams matcher;
@@ -40,6 +41,9 @@ struct PipelineConfig {
     list("memory_limit_mb", memory_limit_mb, {0, 1e7},
          "memory for voxels, 0 = no limit; what is out of view waits on the disk; never changes "
          "results");
+    list("refine", refine,
+         "map when all frames are tracked, with places seen twice fitted together; otherwise at "
+         "once");
     list.section("dataset", dataset);
     list.section("rectification", rectification);
     list.one_of("matcher", matcher, "which matcher finds the disparities");

@@ -11,8 +11,8 @@
 namespace stereovox {
 
 // In the order in which a frame passes through them.
-inline constexpr std::array<const char*, 5> kStages = {"rectify", "disparity", "odometry",
-                                                       "occupancy", "navmap"};
+inline constexpr std::array<const char*, 6> kStages = {"rectify", "disparity", "odometry",
+                                                       "store",   "occupancy", "navmap"};
 
 struct Duration {
   double wall_ms = 0.0, cpu_ms = 0.0;  // cpu: of the calling thread
