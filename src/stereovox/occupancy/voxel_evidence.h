@@ -37,6 +37,8 @@ struct VoxelEvidence {
   }
   // The nearest level of an evidence in [0, 1].
   [[gnu::always_inline]] static int level_of(float evidence) {
+    // A call of lround would keep loops from becoming vector instructions.
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings)
     return static_cast<int>(evidence * (kLevels - 1) + 0.5F);
   }
   // All that unions by rank ask for, of so many equal points. `level` is that of some evidence.
