@@ -1,7 +1,9 @@
 #include "stereovox/occupancy/frame_observation.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <type_traits>
 #include <utility>
 
 #include "stereovox/core/parallel.h"
@@ -51,22 +53,28 @@ void store_reach(const FrameView& frame, const PixelRun& run, const PixelChunk& 
 }
 
 void store_reach(const FrameView& frame, RowRange rows, ReachPyramid& reach) {
+  const PixelLimits limits = pixel_limits(frame);
   PixelChunk chunk;
   for_each_run(frame, frame.steps.ray_px, rows, [&](const PixelRun& run) {
-    measure_chunk(frame, run, chunk);
+    measure_chunk(frame.disparity, limits, run, chunk);
     store_reach(frame, run, chunk, reach);
   });
 }
 
 // What the points of some rows mark. With `reach` the free ends of their rays are stored as well:
 // both read the same pixels.
+template <class Mark>
 void mark_rows(const FrameView& frame, RowRange rows, ReachPyramid* reach,
-               SurfaceMarks<LevelMark>& marks) {
+               SurfaceMarks<Mark>& marks) {
+  const PixelLimits limits = pixel_limits(frame);
   PixelChunk chunk;
   AxisLevels levels;
   for_each_run(frame, frame.steps.surface_px, rows, [&](const PixelRun& run) {
-    measure_chunk(frame, run, chunk);
-    mark_levels(frame, chunk, levels, marks);
+    measure_chunk(frame.disparity, limits, run, chunk);
+    if constexpr (std::is_same_v<Mark, PointsMark>)
+      mark_points(frame, chunk, marks);
+    else
+      mark_levels(frame, chunk, levels, marks);
     if (reach != nullptr) store_reach(frame, run, chunk, *reach);
   });
 }
@@ -161,8 +169,9 @@ class EvidenceTable {
   // `observation`(evidence, expected points, whether rays crossed the voxel) is O_t.
   template <class Mark>
   void add(const Mark& mark) {
-    touched_.set(mark.position());
-    mark.add_to(table_[static_cast<std::size_t>(mark.position())]);
+    const auto position = static_cast<std::size_t>(mark.position());
+    is_touched_[position] = 1;
+    mark.add_to(table_[position]);
   }
 
   template <class Observation>
@@ -170,9 +179,10 @@ class EvidenceTable {
                         Observation observation) {
     BlockObservation out{.index = index, .observed = free, .hit = {}, .values = {}};
     const float min_hit = min_hit_observation(frame);
-    for_each_in(touched_, [&](int i) {
+    const ExpectedPoints expected_points(frame);
+    for_each_in(touched(), [&](int i) {
       VoxelEvidence& evidence = table_[static_cast<std::size_t>(i)];
-      const double expected = expected_points(frame, voxel_at(index, i));
+      const double expected = expected_points.from(voxel_at(index, i));
       const float value = observation(evidence, expected, free.contains(i));
       evidence = {};
       if (value == kNothingSaid) return;
@@ -181,13 +191,20 @@ class EvidenceTable {
       out.observed.set(i);
       if (value > min_hit) out.hit.set(i);
     });
-    touched_ = {};
+    is_touched_.fill(0);
     return out;
   }
 
  private:
+  VoxelMask touched() const {
+    VoxelMask mask;
+    for (int i = 0; i < kVoxelsPerBlock; ++i)
+      if (is_touched_[static_cast<std::size_t>(i)] != 0) mask.set(i);
+    return mask;
+  }
+
   std::vector<VoxelEvidence> table_ = std::vector<VoxelEvidence>(kVoxelsPerBlock);
-  VoxelMask touched_;
+  std::array<std::uint8_t, kVoxelsPerBlock> is_touched_{};  // bytes: a bit needs its word first
 };
 
 template <class Mark>
@@ -254,7 +271,6 @@ FrameObservation observe_with(const FrameView& frame, const VoxelMap& map, int t
   MarkedBands<Mark> marked(bands.count());
   bands.for_each([&](std::size_t band, RowRange rows) {
     mark_rows(frame, rows, share_pixels ? &reach : nullptr, marked[band]);
-    marked[band].close();
     if (is_projected && !share_pixels) store_reach(frame, rows, reach);
   });
   MaskedBlocks blocks = is_projected ? free_by_projection(frame, reach, threads)
@@ -274,8 +290,15 @@ FrameObservation observe_with(const FrameView& frame, const VoxelMap& map, int t
 }  // namespace
 
 FrameObservation observe_frame(const FrameView& frame, const VoxelMap& map, int threads) {
-  return levels_suffice(frame) ? observe_with<LevelMark>(frame, map, threads)
-                               : observe_with<EvidenceMark>(frame, map, threads);
+  switch (sufficient_marks(frame)) {
+    case MarkKind::points:
+      return observe_with<PointsMark>(frame, map, threads);
+    case MarkKind::levels:
+      return observe_with<LevelMark>(frame, map, threads);
+    case MarkKind::evidence:
+      break;
+  }
+  return observe_with<EvidenceMark>(frame, map, threads);
 }
 
 }  // namespace stereovox

@@ -173,14 +173,15 @@ Chord chord_in(const FrameView& frame, const Eigen::Vector3d& inverse_ray,
   return chord;
 }
 
-double expected_points(const FrameView& frame, const Eigen::Vector3i& voxel) {
-  const OccupancyParams& params = frame.params;
-  const Eigen::Vector3d center = voxel_center_of(params.voxel_size_m, voxel);
-  const double z_m = std::max((frame.T_camera_world * center).z(), params.min_depth_m);
-  const double steps_m = z_m * frame.steps.surface_px;
-  const double area = params.voxel_size_m * params.voxel_size_m;
-  return params.valid_fraction * area * frame.camera.pinhole.fx_px * frame.camera.pinhole.fy_px /
-         (steps_m * steps_m);
+ExpectedPoints::ExpectedPoints(const FrameView& frame)
+    : voxel_size_m_(frame.params.voxel_size_m),
+      min_depth_m_(frame.params.min_depth_m),
+      camera_m_(frame.T_world_camera.translation),
+      forward_(frame.measuring.R_world_camera.col(2)) {
+  const double area = voxel_size_m_ * voxel_size_m_;
+  const double step = frame.steps.surface_px;
+  at_one_metre_ = frame.params.valid_fraction * area * frame.camera.pinhole.fx_px *
+                  frame.camera.pinhole.fy_px / (step * step);
 }
 
 bool is_in_frustum(const FrameView& frame, const Eigen::Vector3i& voxel) {

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
 #include "stereovox/core/camera.h"
+#include "stereovox/core/grid_geometry.h"
 #include "stereovox/core/image.h"
 #include "stereovox/core/se3.h"
 #include "stereovox/occupancy/occupancy_params.h"
@@ -91,8 +93,21 @@ float free_end_m(const FrameView& frame, int u, int v);
 // The part of the ray that the profile speaks of beyond the free one, within the height limits.
 std::optional<Segment> profile_segment(const FrameView& frame, const PointMeasurement& point);
 
-// N_exp of eq. (13): how many measured pixels a face of this voxel would send, seen frontally.
-double expected_points(const FrameView& frame, const Eigen::Vector3i& voxel);
+// N_exp of eq. (13): how many measured pixels a face of a voxel would send, seen frontally.
+class ExpectedPoints {
+ public:
+  explicit ExpectedPoints(const FrameView& frame);
+
+  double from(const Eigen::Vector3i& voxel) const {
+    const double depth_m = forward_.dot(voxel_center_of(voxel_size_m_, voxel) - camera_m_);
+    const double z_m = std::max(depth_m, min_depth_m_);
+    return at_one_metre_ / (z_m * z_m);
+  }
+
+ private:
+  double voxel_size_m_, min_depth_m_, at_one_metre_;
+  Eigen::Vector3d camera_m_, forward_;
+};
 
 // Where the ray to the point runs inside this voxel, in metres from the camera; end < begin when it
 // misses the voxel. `inverse_ray` holds 1 / ray_world.

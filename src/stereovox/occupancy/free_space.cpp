@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "stereovox/core/parallel.h"
-#include "stereovox/occupancy/vector_target.h"
 
 namespace stereovox {
 namespace {
@@ -120,21 +118,6 @@ struct AskLayer {
   }
 };
 
-// One bit for each byte of `bytes` (0 or 1), the first lowest. The product shifts the eight bytes
-// of a row so that byte i ends as bit 56 + i.
-std::uint64_t packed(const std::array<std::uint8_t, kLayer>& bytes) {
-  static_assert(std::endian::native == std::endian::little);
-  constexpr std::uint64_t kShifts = 0x0102040810204080ULL;
-  constexpr int kLastByte = 56;
-  std::uint64_t bits = 0;
-  for (std::size_t row = 0; row < kLayer; row += 8) {
-    std::uint64_t eight = 0;
-    std::memcpy(&eight, bytes.data() + row, sizeof eight);
-    bits |= (eight * kShifts) >> kLastByte << row;
-  }
-  return bits;
-}
-
 std::uint64_t crossed_in_layer(const LayerQuestions& questions, const float* cells) {
   std::array<float, kLayer> reached;
   for (std::size_t i = 0; i < kLayer; ++i)
@@ -142,7 +125,7 @@ std::uint64_t crossed_in_layer(const LayerQuestions& questions, const float* cel
   std::array<std::uint8_t, kLayer> is_crossed;
   for (std::size_t i = 0; i < kLayer; ++i)
     is_crossed[i] = questions.distance2[i] <= reached[i] ? 1 : 0;
-  return packed(is_crossed);
+  return bits_of_bytes(is_crossed);
 }
 
 bool is_layer_within(const FreeSpaceView& view, int z) {
@@ -150,7 +133,7 @@ bool is_layer_within(const FreeSpaceView& view, int z) {
 }
 
 VoxelMask crossed_in_block(const FreeSpaceView& view, const ReachPyramid& reach,
-                           const Eigen::Vector3i& block, bool is_all_crossed) {
+                           const Eigen::Vector3i& block, bool is_all_crossed, VectorTarget target) {
   VoxelMask crossed;
   const PyramidShape shape = shape_of(reach);
   for (int z = 0; z < kBlockSide; ++z) {
@@ -160,7 +143,7 @@ VoxelMask crossed_in_block(const FreeSpaceView& view, const ReachPyramid& reach,
     word = ~std::uint64_t{0};
     if (is_all_crossed) continue;
     LayerQuestions questions;
-    on_best_target(AskLayer{}, view, shape, first, questions);
+    run_on(target, AskLayer{}, view, shape, first, questions);
     word = crossed_in_layer(questions, reach.cells());
   }
   return crossed;
@@ -175,18 +158,24 @@ class SeenCube {
   SeenCube(const FreeSpaceView& view, const Eigen::Vector3i& first, int side) {
     const float half = kHalf * static_cast<float>(side - 1);  // from centre to centre
     std::array<float, 3> p{};
-    for (int k = 0; k < 3; ++k) p[std::size_t(k)] = center_of(view, k, first[k]) + half;
+    float near2 = 0.0F, far2 = 0.0F;
+    for (int k = 0; k < 3; ++k) {
+      const float middle = p[std::size_t(k)] = center_of(view, k, first[k]) + half;
+      const float near = std::max(0.0F, std::abs(middle) - half), far = std::abs(middle) + half;
+      near2 += near * near, far2 += far * far;
+    }
     for (std::size_t row = 0; row < 3; ++row) {
       const float* const r = view.R_camera_world.data() + 3 * row;
       middle_[row] = r[0] * p[0] + r[1] * p[1] + r[2] * p[2];
       extent_[row] = (std::abs(r[0]) + std::abs(r[1]) + std::abs(r[2])) * half + kSlack;
     }
-    distance_ = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-    radius_ = half * std::sqrt(3.0F) + kSlack + distance_ * kRelativeSlack;
+    nearest2_ = near2 * (1.0F - kRelativeSlack);
+    farthest2_ = far2 * (1.0F + kRelativeSlack);
   }
 
-  float nearest() const { return std::max(0.0F, distance_ - radius_); }
-  float farthest() const { return distance_ + radius_; }
+  // Squares of distances from the camera, over the centres of its voxels.
+  float nearest2() const { return nearest2_; }
+  float farthest2() const { return farthest2_; }
   bool is_behind() const { return middle_[2] + extent_[2] < kNearest_voxels; }
   bool reaches_behind() const { return middle_[2] - extent_[2] < 1.0F; }
 
@@ -205,10 +194,10 @@ class SeenCube {
   }
 
  private:
-  static constexpr float kSlack = 0.01F, kRelativeSlack = 1e-5F;
+  static constexpr float kSlack = 0.01F, kRelativeSlack = 1e-4F;
 
   std::array<float, 3> middle_{}, extent_{};
-  float distance_, radius_;
+  float nearest2_, farthest2_;
 };
 
 class BlockSearch {
@@ -296,9 +285,8 @@ class BlockSearch {
     const auto near = reach_.range_of(
         sample(across.low - margin, last_u), sample(down.low - margin, last_v),
         sample(across.high + margin + 1.0F, last_u), sample(down.high + margin + 1.0F, last_v));
-    const float nearest = seen.nearest(), farthest = seen.farthest();
-    if (near.largest < 0.0F || nearest * nearest > near.largest) return Crossed::nothing;
-    const bool is_all = is_inside && near.smallest > 0.0F && farthest * farthest < near.smallest;
+    if (near.largest < 0.0F || seen.nearest2() > near.largest) return Crossed::nothing;
+    const bool is_all = is_inside && near.smallest > 0.0F && seen.farthest2() < near.smallest;
     return is_all ? Crossed::everything : Crossed::something;
   }
 
@@ -346,7 +334,7 @@ void ReachPyramid::build_level(int level) {
 }
 
 ReachPyramid::Range ReachPyramid::range_of(int u0, int v0, int u1, int v1) const {
-  constexpr int kMostCells = 3;
+  constexpr int kMostCells = 4;
   int level = 1;
   while (level < kLevels - 1 && ((u1 >> level) - (u0 >> level) >= kMostCells ||
                                  (v1 >> level) - (v0 >> level) >= kMostCells))
@@ -391,7 +379,7 @@ bool is_crossed(const FreeSpaceView& view, const ReachPyramid& reach,
 }
 
 std::vector<CrossedBlock> crossed_blocks(const FreeSpaceView& view, const ReachPyramid& reach,
-                                         int threads) {
+                                         int threads, VectorTarget target) {
   const BlockSearch search(view, reach);
   std::vector<CrossedBlock> crossed(search.found.size());
   constexpr int kBlocksAtATime = 32;
@@ -400,7 +388,8 @@ std::vector<CrossedBlock> crossed_blocks(const FreeSpaceView& view, const ReachP
     const int end = std::min(count, (share + 1) * kBlocksAtATime);
     for (int i = share * kBlocksAtATime; i < end; ++i) {
       const auto& [block, is_all] = search.found[static_cast<std::size_t>(i)];
-      crossed[static_cast<std::size_t>(i)] = {block, crossed_in_block(view, reach, block, is_all)};
+      crossed[static_cast<std::size_t>(i)] = {block,
+                                              crossed_in_block(view, reach, block, is_all, target)};
     }
   });
   std::erase_if(crossed, [](const CrossedBlock& block) { return block.voxels.is_empty(); });

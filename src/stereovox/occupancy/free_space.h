@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "stereovox/occupancy/frame_view.h"
+#include "stereovox/occupancy/vector_target.h"
 #include "stereovox/occupancy/voxel_mask.h"
 
 namespace stereovox {
@@ -100,6 +101,6 @@ struct CrossedBlock {
 
 // All blocks with crossed voxels, in an order that does not depend on the threads.
 std::vector<CrossedBlock> crossed_blocks(const FreeSpaceView& view, const ReachPyramid& reach,
-                                         int threads);
+                                         int threads, VectorTarget target = best_target());
 
 }  // namespace stereovox

@@ -87,6 +87,21 @@ TEST(FreeSpace, BlocksHoldExactlyTheVoxelsThatAreCrossed) {
     }
 }
 
+TEST(FreeSpace, BlocksAreTheSameOnEveryTarget) {
+  const Seen seen(scene::random_drive(9, 2).back(), params_with(0.05, 1));
+  const auto on = [&](VectorTarget target) {
+    return crossed_blocks(seen.view, seen.reach, 1, target);
+  };
+  const std::vector<CrossedBlock> plain = on(VectorTarget::portable);
+  EXPECT_GT(plain.size(), 10U);
+  for (const VectorTarget target : targets_here()) {
+    const std::vector<CrossedBlock> fast = on(target);
+    ASSERT_EQ(fast.size(), plain.size());
+    for (std::size_t i = 0; i < fast.size(); ++i)
+      EXPECT_EQ(fast[i].voxels.words, plain[i].voxels.words);
+  }
+}
+
 // A wall leaves blocks that are crossed as a whole, which are not asked voxel by voxel.
 TEST(FreeSpace, BlocksHoldExactlyTheVoxelsThatAreCrossedBeforeAWall) {
   for (const double yaw_rad : {0.0, 0.3, 1.9}) {

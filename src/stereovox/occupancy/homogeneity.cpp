@@ -60,8 +60,4 @@ double heterogeneity(const HomogeneityParams& params, float observation,
   return count == 0 ? 0.0 : sum / count;
 }
 
-double homogeneity(const HomogeneityParams& params, double heterogeneity) {
-  return std::max(params.min_homogeneity, 1.0 - heterogeneity);
-}
-
 }  // namespace stereovox

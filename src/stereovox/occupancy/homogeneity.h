@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 #include <string>
 
@@ -35,6 +36,8 @@ double heterogeneity(const HomogeneityParams& params, float observation,
                      std::span<const float> neighbours);
 
 // The factor (1 - H) of eq. (16) with its floor, without which an isolated voxel never changes.
-double homogeneity(const HomogeneityParams& params, double heterogeneity);
+inline double homogeneity(const HomogeneityParams& params, double heterogeneity) {
+  return std::max(params.min_homogeneity, 1.0 - heterogeneity);
+}
 
 }  // namespace stereovox

@@ -1,103 +1,39 @@
 #include "stereovox/occupancy/integrate.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
+#include <numeric>
+#include <utility>
 
 #include "stereovox/core/parallel.h"
 #include "stereovox/occupancy/frame_observation.h"
 #include "stereovox/occupancy/frame_visibility.h"
+#include "stereovox/occupancy/padded_observations.h"
 #include "stereovox/occupancy/voxel_update.h"
 
 namespace stereovox {
 namespace {
 
-// A block's observations with a border of one voxel on every side.
-constexpr int kPaddedSide = kBlockSide + 2;
-
-constexpr int padded_position(int x, int y, int z) {
-  return (x + 1) + kPaddedSide * ((y + 1) + kPaddedSide * (z + 1));
-}
-
-int padded_position_of(int position) {
-  const Eigen::Vector3i local = voxel_at(Eigen::Vector3i::Zero(), position);
-  return padded_position(local.x(), local.y(), local.z());
-}
-
-class PaddedObservations {
- public:
-  PaddedObservations(const FrameObservation& frame, const BlockObservation& center) {
-    std::array<const BlockObservation*, kCube> blocks{};
-    for (int i = 0; i < kCube; ++i) {
-      const int number = frame.index.find(center.index + step_to(i));
-      if (number == BlockIndex::kNone) continue;
-      blocks[static_cast<std::size_t>(i)] = &frame.blocks[static_cast<std::size_t>(number)];
-      has_hits_ = has_hits_ || !frame.blocks[static_cast<std::size_t>(number)].values.empty();
-    }
-    if (!has_hits_) return;
-    values_.fill(kUnobserved);
-    for (int i = 0; i < kCube; ++i)
-      if (blocks[static_cast<std::size_t>(i)] != nullptr)
-        copy_overlap(*blocks[static_cast<std::size_t>(i)], step_to(i));
-  }
-
-  // When nothing near is hit, every observation near is 0 and so is H.
-  bool is_uniform() const { return !has_hits_; }
-
-  double heterogeneity_at(int position, const HomogeneityParams& params,
-                          std::span<const int> neighbours) const {
-    const int center = padded_position_of(position);
-    std::array<float, 26> values{};
-    for (std::size_t i = 0; i < neighbours.size(); ++i)
-      values[i] = values_[static_cast<std::size_t>(center + neighbours[i])];
-    return heterogeneity(params, values_[static_cast<std::size_t>(center)],
-                         std::span(values).first(neighbours.size()));
-  }
-
- private:
-  static constexpr int kCube = 27;  // the block and those around it
-
-  static Eigen::Vector3i step_to(int i) { return {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}; }
-
-  void copy_overlap(const BlockObservation& block, const Eigen::Vector3i& step) {
-    const auto low = [](int s) { return s < 0 ? kBlockSide - 1 : 0; };
-    const auto high = [](int s) { return s > 0 ? 0 : kBlockSide - 1; };
-    for (int z = low(step.z()); z <= high(step.z()); ++z)
-      for (int y = low(step.y()); y <= high(step.y()); ++y)
-        for (int x = low(step.x()); x <= high(step.x()); ++x)
-          values_[static_cast<std::size_t>(padded_position(
-              x + kBlockSide * step.x(), y + kBlockSide * step.y(), z + kBlockSide * step.z()))] =
-              block.value_at(position_in_block({x, y, z}));
-  }
-
-  std::array<float, kPaddedSide * kPaddedSide * kPaddedSide> values_;  // not while uniform
-  bool has_hits_ = false;
-};
-
-std::vector<int> padded_steps(Neighbourhood neighbourhood) {
-  std::vector<int> steps;
-  for (const Eigen::Vector3i& step : neighbour_steps(neighbourhood))
-    steps.push_back(step.x() + kPaddedSide * (step.y() + kPaddedSide * step.z()));
-  return steps;
-}
-
 // A rule's age factor, which most voxels of a block share.
 template <class Rule>
 class AgeFactor {
  public:
-  explicit AgeFactor(const Rule& rule) : rule_(rule), factor_(rule.age_factor(0.0)) {}
+  AgeFactor(const Rule& rule, const BlockVoxels& voxels, std::uint32_t stamp_ms)
+      : rule_(rule), voxels_(voxels), stamp_ms_(stamp_ms) {}
 
-  double of(const Voxel& voxel, std::uint32_t stamp_ms) {
-    if (!is_known(voxel)) return 1.0;
-    const double age = age_s(voxel, stamp_ms);
-    if (age != age_s_) factor_ = rule_.age_factor(age);
-    age_s_ = age;
+  double of(const PackedVoxel& voxel) {
+    if (voxel.observations == 0) return 1.0;
+    if (voxel.time != time_) factor_ = rule_.age_factor(age_s(voxels_.time_ms(voxel), stamp_ms_));
+    time_ = voxel.time;
     return factor_;
   }
 
  private:
   const Rule& rule_;
-  double age_s_ = 0.0;
-  double factor_;
+  const BlockVoxels& voxels_;
+  std::uint32_t stamp_ms_;
+  int time_ = -1;  // none
+  double factor_ = 1.0;
 };
 
 // A frame and the blocks that it changes.
@@ -145,33 +81,81 @@ class BlockChange {
   std::uint16_t time_;
 };
 
+// The voxels of one layer of a block before an observation, and what they become by it.
+struct LayerChange {
+  PerVoxelOfLayer<float> observation, state;
+  PerVoxelOfLayer<std::int32_t> observations;
+  PerVoxelOfLayer<double> heterogeneity, age_factor;  // for rules that weigh
+};
+
+// Calls change(z, layer) for each layer of the block that is observed, and stores what it becomes.
+template <class Change>
+void change_layers(const BlockObservation& seen, std::uint32_t stamp_ms, BlockVoxels& voxels,
+                   Change change) {
+  const std::uint16_t time = voxels.number_of_time(stamp_ms);
+  LayerChange layer;
+  for (int z = 0; z < kBlockSide; ++z) {
+    const std::uint64_t observed = seen.observed.words[static_cast<std::size_t>(z)];
+    if (observed == 0) continue;
+    const std::size_t first = static_cast<std::size_t>(z) * layer.state.size();
+    for (std::size_t i = 0; i < layer.state.size(); ++i) {
+      const PackedVoxel& voxel = voxels.packed(first + i);
+      layer.observation[i] = seen.values.empty() ? 0.0F : seen.values[first + i];
+      layer.state[i] = voxel.state;
+      layer.observations[i] = voxel.observations;
+    }
+    change(z, layer);
+    for (std::uint64_t rest = observed; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      voxels.observe(first + i, layer.state[i], stamp_ms, time);
+    }
+  }
+}
+
+// Eqs. (16) and (14).
+struct WeighLayer {
+  template <WeighingRule Rule>
+  [[gnu::always_inline]] void operator()(const Rule& rule, const OccupancyParams& params,
+                                         std::uint32_t frames_before, LayerChange& layer) const {
+    const HomogeneityParams homogeneity_params = params.homogeneity;
+    const double initial_state = params.initial_state;
+    const Rule weighing = rule;
+    for (std::size_t i = 0; i < layer.state.size(); ++i) {
+      const double k = weighing.credibility(
+          {.prior_observations = layer.observations[i],
+           .homogeneity = homogeneity(homogeneity_params, layer.heterogeneity[i]),
+           .age_factor = layer.age_factor[i],
+           .frames_before = frames_before});
+      const double state = layer.observations[i] > 0 ? layer.state[i] : initial_state;
+      layer.state[i] = static_cast<float>((1.0 - k) * state + k * layer.observation[i]);
+    }
+  }
+};
+
 // Step 5 for one block, in two passes over the frame: all O_t were there before any H is asked for.
 template <WeighingRule Rule>
-void update_block(const Rule& rule, const FrameChange& change, std::span<const int> neighbours,
-                  std::uint32_t frames_before, const BlockObservation& seen, VoxelBlock& block) {
+void update_block(const Rule& rule, const FrameChange& change, std::uint32_t frames_before,
+                  const BlockObservation& seen, VoxelBlock& block) {
   const OccupancyParams& params = change.frame.params;
   const std::uint32_t stamp_ms = change.frame.stamp_ms;
   const PaddedObservations padded(change.observation, seen);
-  AgeFactor<Rule> age_factor(rule);
-  BlockChange block_change(block, stamp_ms);
-  for_each_in(seen.observed, [&](int i) {
-    const double H =
-        padded.is_uniform() ? 0.0 : padded.heterogeneity_at(i, params.homogeneity, neighbours);
-    block_change.apply(i, [&](Voxel& voxel) {
-      const double k = rule.credibility({.prior_observations = voxel.observations,
-                                         .homogeneity = homogeneity(params.homogeneity, H),
-                                         .age_factor = age_factor.of(voxel, stamp_ms),
-                                         .frames_before = frames_before});
-      update_voxel(seen.value_at(i), k, params.initial_state, stamp_ms, voxel);
-    });
+  AgeFactor<Rule> age_factor(rule, block.voxels, stamp_ms);
+  change_layers(seen, stamp_ms, block.voxels, [&](int z, LayerChange& layer) {
+    const std::size_t first = static_cast<std::size_t>(z) * layer.state.size();
+    for (std::size_t i = 0; i < layer.state.size(); ++i)
+      layer.age_factor[i] = age_factor.of(block.voxels.packed(first + i));
+    if (padded.is_uniform())
+      layer.heterogeneity.fill(0.0);
+    else
+      padded.heterogeneities(z, params.homogeneity, layer.heterogeneity);
+    on_best_target(WeighLayer{}, rule, params, frames_before, layer);
   });
 }
 
 template <WeighingRule Rule>
 void update_map(const Rule& rule, const FrameChange& change, const VoxelMap& map) {
-  const std::vector<int> neighbours = padded_steps(change.frame.params.homogeneity.neighbours);
   for_each_block(change, [&](std::size_t, const BlockObservation& seen, VoxelBlock& block) {
-    update_block(rule, change, neighbours, map.frames_integrated, seen, block);
+    update_block(rule, change, map.frames_integrated, seen, block);
   });
 }
 
@@ -202,24 +186,27 @@ void update_map(const VisibilityRule& rule, const FrameChange& change, const Vox
   });
 }
 
-// Sorts numbers in place of voxels, which is several times faster. A frame is less than 2^21 voxels
-// wide.
+// Sorts by one coordinate and leaves those with the same one in their order, by counting.
+void sort_along(int axis, const VoxelBounds& bounds, std::vector<Eigen::Vector3i>& voxels) {
+  const int low = bounds.min[axis];
+  std::vector<std::size_t> places(static_cast<std::size_t>(bounds.max[axis] - low) + 2, 0);
+  for (const Eigen::Vector3i& voxel : voxels)
+    ++places[static_cast<std::size_t>(voxel[axis] - low) + 1];
+  std::partial_sum(places.begin(), places.end(), places.begin());
+  std::vector<Eigen::Vector3i> sorted(voxels.size());
+  for (const Eigen::Vector3i& voxel : voxels)
+    sorted[places[static_cast<std::size_t>(voxel[axis] - low)]++] = voxel;
+  voxels = std::move(sorted);
+}
+
 void sort_canonically(std::vector<Eigen::Vector3i>& voxels) {
   if (voxels.empty()) return;
-  constexpr int kBits = 21, kMask = (1 << kBits) - 1;
-  Eigen::Vector3i low = voxels.front();
-  for (const Eigen::Vector3i& voxel : voxels) low = low.cwiseMin(voxel);
-  std::vector<std::uint64_t> keys;
-  keys.reserve(voxels.size());
+  VoxelBounds bounds{voxels.front(), voxels.front()};
   for (const Eigen::Vector3i& voxel : voxels) {
-    const Eigen::Matrix<std::uint64_t, 3, 1> place = (voxel - low).cast<std::uint64_t>();
-    keys.push_back(place.x() << 2 * kBits | place.y() << kBits | place.z());
+    bounds.min = bounds.min.cwiseMin(voxel);
+    bounds.max = bounds.max.cwiseMax(voxel);
   }
-  std::ranges::sort(keys);
-  for (std::size_t i = 0; i < keys.size(); ++i)
-    voxels[i] = low + Eigen::Vector3i(static_cast<int>(keys[i] >> 2 * kBits),
-                                      static_cast<int>(keys[i] >> kBits & kMask),
-                                      static_cast<int>(keys[i] & kMask));
+  for (const int axis : {2, 1, 0}) sort_along(axis, bounds, voxels);
 }
 
 FrameUpdate summary_of(const FrameObservation& observation) {

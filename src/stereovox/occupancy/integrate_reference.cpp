@@ -122,10 +122,11 @@ std::vector<Eigen::Vector3i> join_points(const FrameView& frame,
                                          const PerVoxel<VoxelEvidence>& evidence,
                                          PerVoxel<float>& observations) {
   std::vector<Eigen::Vector3i> hits;
+  const ExpectedPoints expected_points(frame);
   with_observation(frame, [&](auto observation) {
     for (const auto& [voxel, of_voxel] : evidence) {
       const bool is_crossed = observations.contains(voxel);
-      const float value = observation(of_voxel, expected_points(frame, voxel), is_crossed);
+      const float value = observation(of_voxel, expected_points.from(voxel), is_crossed);
       if (value == kNothingSaid) continue;
       observations[voxel] = value;
       if (value > min_hit_observation(frame)) hits.push_back(voxel);
@@ -140,7 +141,8 @@ void update_map(const Rule& rule, const FrameView& frame, const PerVoxel<float>&
   for (const auto& [index, observation] : observations) {
     const double H = heterogeneity_of(index, observations, frame.params.homogeneity);
     Voxel voxel = map.at(index);
-    const double age_factor = is_known(voxel) ? rule.age_factor(age_s(voxel, frame.stamp_ms)) : 1.0;
+    const double age_factor =
+        is_known(voxel) ? rule.age_factor(age_s(voxel.last_seen_ms, frame.stamp_ms)) : 1.0;
     const double k = rule.credibility({.prior_observations = voxel.observations,
                                        .homogeneity = homogeneity(frame.params.homogeneity, H),
                                        .age_factor = age_factor,

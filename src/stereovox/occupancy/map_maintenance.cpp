@@ -161,7 +161,7 @@ void decay(const DecayParams& params, std::uint32_t now_ms, VoxelMap& map) {
   constexpr double kUndecided = 0.5;
   for (const Eigen::Vector3i& place : all_blocks(map))
     change_block(place, map, [&](const Eigen::Vector3i&, Voxel& voxel) {
-      const double faded = std::exp(-age_s(voxel, now_ms) / params.time_constant_s);
+      const double faded = std::exp(-age_s(voxel.last_seen_ms, now_ms) / params.time_constant_s);
       const double distance = (static_cast<double>(voxel.state) - kUndecided) * faded;
       if (faded < 1.0) voxel.state = static_cast<float>(kUndecided + distance);
       return std::abs(distance) >= params.forget_below;

@@ -1,6 +1,7 @@
 // The observation models of eq. (12). A model has `observe`, the evidence in [0, 1] that one point
 // gives a voxel (`offset_m` from the voxel's centre to the point), and `reach_m`, the offset along
 // each axis from which on that is 0. To add one, write its header and name it here.
+// PointObservation needs neither: it speaks for the voxel that holds the point.
 #pragma once
 
 #include <cmath>
@@ -53,6 +54,12 @@ void for_each_observed_voxel(const Model& model, const PointMeasurement& point, 
         visit(static_cast<const Eigen::Vector3i&>(voxel),
               static_cast<float>(model.observe(point, offset_m, half_edge_m)));
       }
+}
+
+template <class Visit>
+void for_each_observed_voxel(const PointObservation&, const PointMeasurement& point,
+                             double voxel_size_m, Visit visit) {
+  visit(voxel_index_of(voxel_size_m, point.p_world), 1.0F);
 }
 
 }  // namespace stereovox

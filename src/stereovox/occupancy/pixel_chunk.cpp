@@ -6,32 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "stereovox/occupancy/vector_target.h"
+#include "stereovox/occupancy/voxel_mask.h"
 
 namespace stereovox {
 namespace {
 
 constexpr int kSize = PixelChunk::kSize;
-
-struct ChunkLimits {
-  MeasuringFrame measuring;
-  FreeMargin margin;
-  double min_depth_m, max_depth_m, min_z_m, max_z_m, max_sigma_m, exact_sigma_m, max_clearing_m;
-};
-
-ChunkLimits limits_of(const FrameView& frame) {
-  const OccupancyParams& p = frame.params;
-  const double half_voxel_m = 0.5 * p.voxel_size_m;
-  return {.measuring = frame.measuring,
-          .margin = free_margin(frame),
-          .min_depth_m = p.min_depth_m,
-          .max_depth_m = p.max_depth_m,
-          .min_z_m = frame.min_z_m,
-          .max_z_m = frame.max_z_m,
-          .max_sigma_m = max_sigma_m(p),
-          .exact_sigma_m = half_voxel_m,
-          .max_clearing_m = p.max_clearing_m};
-}
 
 using Doubles = PixelChunk::PerPixel<double>;
 
@@ -78,16 +58,16 @@ struct Disparities {
     for (double& error_px : out.error_px) error_px = std::sqrt(error_px);
 }
 
-// What decides over the pixels, as numbers: 1 yes, 0 no.
+// The answers of some pixels, as numbers: 1 yes, 0 no.
 struct ChunkAnswers {
   Doubles marks, is_exact, free_end_m;
 };
 
 // Where nothing is measured the numbers are nonsense until the end, when they are left out.
-[[gnu::always_inline]] inline void measure_pixels(const ChunkLimits& limits,
+[[gnu::always_inline]] inline void measure_pixels(const PixelLimits& limits,
                                                   const ChunkInput& pixels, const PixelRun& run,
                                                   ChunkAnswers& answers, PixelChunk& out) {
-  const ChunkLimits l = limits;
+  const PixelLimits l = limits;
   const MeasuringFrame& f = l.measuring;
   Disparities in;
   check_pixels(f, pixels, in);
@@ -106,7 +86,7 @@ struct ChunkAnswers {
     const double within_m = end_m < l.max_clearing_m ? end_m : l.max_clearing_m;
     answers.free_end_m[at] = is_measured ? within_m : 0.0;
     answers.marks[at] = marks ? 1.0 : 0.0;
-    answers.is_exact[at] = sigma_m < l.exact_sigma_m ? 1.0 : 0.0;
+    answers.is_exact[at] = marks & (sigma_m < l.exact_sigma_m) ? 1.0 : 0.0;
     out.p_world_m[0][at] = marks ? x_m : 0.0;
     out.p_world_m[1][at] = marks ? y_m : 0.0;
     out.p_world_m[2][at] = marks ? z_m : 0.0;
@@ -116,7 +96,7 @@ struct ChunkAnswers {
   }
 }
 
-void store(const ChunkAnswers& answers, PixelChunk& out) {
+[[gnu::always_inline]] inline void store(const ChunkAnswers& answers, PixelChunk& out) {
   for (std::size_t i = 0; i < kSize; ++i) {
     out.marks[i] = answers.marks[i] != 0.0 ? 1 : 0;
     out.is_exact[i] = answers.is_exact[i] != 0.0 ? 1 : 0;
@@ -124,10 +104,18 @@ void store(const ChunkAnswers& answers, PixelChunk& out) {
   }
 }
 
+using Integers = PixelChunk::PerPixel<std::int32_t>;
+
+// The voxels of the points along one axis; those that mark nothing have none.
+struct AxisReach {
+  Integers count, own;
+  Doubles inverse_ramp;
+};
+
 template <AxisModel Model>
 [[gnu::always_inline]] inline void find_reach(const Model& model, const PixelChunk& chunk,
-                                              double size_m, std::size_t k, AxisLevels& out,
-                                              Doubles& inverse_ramp) {
+                                              double size_m, std::size_t k, Integers& first_voxel,
+                                              AxisReach& out) {
   const double half_m = 0.5 * size_m;
   for (std::size_t i = 0; i < kSize; ++i) {
     const double p_m = chunk.p_world_m[k][i];
@@ -135,82 +123,94 @@ template <AxisModel Model>
     const double reach_m = model.axis_reach_m(ramp_m, half_m);
     const auto first = static_cast<std::int32_t>(first_in_reach(p_m, reach_m, size_m));
     const auto last = static_cast<std::int32_t>(last_in_reach(p_m, reach_m, size_m));
-    out.first[k][i] = first;
-    out.count[k][i] = chunk.marks[i] != 0 ? last - first + 1 : 0;
-    out.own[k][i] = static_cast<std::int32_t>(std::floor(p_m / size_m));
-    inverse_ramp[i] = 1.0 / ramp_m;
+    first_voxel[i] = first;
+    out.count[i] = chunk.marks[i] != 0 ? last - first + 1 : 0;
+    out.own[i] = static_cast<std::int32_t>(std::floor(p_m / size_m));
+    out.inverse_ramp[i] = 1.0 / ramp_m;
   }
 }
 
 template <AxisModel Model>
 [[gnu::always_inline]] inline void find_levels(const Model& model, const PixelChunk& chunk,
                                                double size_m, std::size_t k, int j,
-                                               const Doubles& inverse_ramp, AxisLevels& out) {
+                                               const Integers& first, const AxisReach& reach,
+                                               AxisVoxels& out) {
   const double half_m = 0.5 * size_m;
-  PixelChunk::PerPixel<std::int32_t> levels;
+  Integers levels;
   for (std::size_t i = 0; i < kSize; ++i) {
-    const double center_m = ((out.first[k][i] + j) + 0.5) * size_m;
+    const double center_m = ((first[i] + j) + 0.5) * size_m;
     const auto evidence = static_cast<float>(
-        model.axis_evidence(chunk.p_world_m[k][i] - center_m, half_m, inverse_ramp[i]));
+        model.axis_evidence(chunk.p_world_m[k][i] - center_m, half_m, reach.inverse_ramp[i]));
     const int level = evidence > 0.0F ? VoxelEvidence::level_of(evidence) + 1 : 0;
-    levels[i] = j < out.count[k][i] ? level : 0;
+    levels[i] = j < reach.count[i] ? level : 0;
   }
-  PixelChunk::PerPixel<std::uint8_t>& stored = out.levels[k][static_cast<std::size_t>(j)];
-  for (std::size_t i = 0; i < kSize; ++i) stored[i] = static_cast<std::uint8_t>(levels[i]);
+  for (std::size_t i = 0; i < kSize; ++i) out.level[i] = static_cast<std::uint8_t>(levels[i]);
 }
 
-// How the voxels near a point lie in their blocks.
-[[gnu::always_inline]] inline void find_positions(AxisLevels& out) {
+[[gnu::always_inline]] inline void find_places(std::size_t k, int j, const Integers& first,
+                                               const AxisReach& reach, AxisVoxels& out) {
   constexpr int kInside = kBlockSide - 1;
+  const int shift = static_cast<int>(k) * kBlockSideLog2;
   for (std::size_t i = 0; i < kSize; ++i) {
-    const int x = out.first[0][i] & kInside, y = out.first[1][i] & kInside;
-    const int z = out.first[2][i] & kInside;
-    out.first_position[i] = x | y << kBlockSideLog2 | z << 2 * kBlockSideLog2;
-    const bool is_in_one = (x + out.count[0][i] <= kBlockSide) &
-                           (y + out.count[1][i] <= kBlockSide) &
-                           (z + out.count[2][i] <= kBlockSide);
-    out.is_in_one_block[i] = is_in_one ? 1 : 0;
+    const int voxel = first[i] + j;
+    out.place[i] = static_cast<std::uint16_t>((voxel & kInside) << shift);
+    out.is_own[i] = (voxel == reach.own[i]) & (j < reach.count[i]) ? 1 : 0;
   }
-}
-
-[[gnu::always_inline]] inline void find_only_ones(AxisLevels& out) {
-  out.only_level.fill(-1);
-  if (out.largest_count[0] == 0) return;
-  const auto& x = out.levels[0][0];
-  const auto& y = out.levels[1][0];
-  const auto& z = out.levels[2][0];
-  for (std::size_t i = 0; i < kSize; ++i) {
-    const bool is_only = (out.count[0][i] == 1) & (out.count[1][i] == 1) & (out.count[2][i] == 1);
-    const int level_xy = x[i] < y[i] ? x[i] : y[i];
-    const int level = level_xy < z[i] ? level_xy : z[i];
-    const bool is_own = (out.first[0][i] == out.own[0][i]) & (out.first[1][i] == out.own[1][i]) &
-                        (out.first[2][i] == out.own[2][i]);
-    out.only_level[i] = is_only ? level : -1;
-    out.is_only_own[i] = is_own ? 1 : 0;
-  }
+  PixelChunk::PerPixel<std::uint8_t> changes{};
+  for (std::size_t i = 1; i < kSize; ++i)
+    changes[i] = (first[i] + j) >> kBlockSideLog2 != (first[i - 1] + j) >> kBlockSideLog2 ? 1 : 0;
+  out.changes_block = bits_of_bytes(changes);
 }
 
 template <AxisModel Model>
 [[gnu::always_inline]] inline void find_all_levels(const Model& model, const PixelChunk& chunk,
                                                    double size_m, AxisLevels& out) {
   for (std::size_t k = 0; k < 3; ++k) {
-    Doubles inverse_ramp;
-    find_reach(model, chunk, size_m, k, out, inverse_ramp);
+    AxisReach reach;
+    find_reach(model, chunk, size_m, k, out.first[k], reach);
     std::int32_t largest = 0;
-    for (const std::int32_t count : out.count[k]) largest = std::max(largest, count);
+    for (const std::int32_t count : reach.count) largest = std::max(largest, count);
     out.largest_count[k] = largest;
-    if (out.levels[k].size() < static_cast<std::size_t>(largest))
-      out.levels[k].resize(static_cast<std::size_t>(largest));
-    for (int j = 0; j < largest; ++j) find_levels(model, chunk, size_m, k, j, inverse_ramp, out);
+    if (out.voxels[k].size() < static_cast<std::size_t>(largest))
+      out.voxels[k].resize(static_cast<std::size_t>(largest));
+    for (int j = 0; j < largest; ++j) {
+      AxisVoxels& voxels = out.voxels[k][static_cast<std::size_t>(j)];
+      find_levels(model, chunk, size_m, k, j, out.first[k], reach, voxels);
+      find_places(k, j, out.first[k], reach, voxels);
+    }
   }
-  find_positions(out);
-  find_only_ones(out);
+}
+
+[[gnu::always_inline]] inline void find_own(const PixelChunk& chunk, double size_m, OwnVoxels& out,
+                                            PixelChunk::PerPixel<std::uint8_t>& is_new) {
+  constexpr int kInside = kBlockSide - 1;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < kSize; ++i)
+      out.voxel[k][i] = static_cast<std::int32_t>(std::floor(chunk.p_world_m[k][i] / size_m));
+  const auto& [x, y, z] = out.voxel;
+  for (std::size_t i = 0; i < kSize; ++i)
+    out.position[i] = (x[i] & kInside) | (y[i] & kInside) << kBlockSideLog2 |
+                      (z[i] & kInside) << 2 * kBlockSideLog2;
+  is_new[0] = 1;
+  for (std::size_t i = 1; i < kSize; ++i) {
+    const int differs = (x[i] ^ x[i - 1]) | (y[i] ^ y[i - 1]) | (z[i] ^ z[i - 1]);
+    is_new[i] = differs != 0 ? 1 : 0;
+  }
 }
 
 struct MeasurePixels {
+  [[gnu::always_inline]] void operator()(const PixelLimits& limits, const ChunkInput& in,
+                                         const PixelRun& run, PixelChunk& out) const {
+    ChunkAnswers answers;
+    measure_pixels(limits, in, run, answers, out);
+    store(answers, out);
+  }
+};
+
+struct FindOwn {
   template <class... Arguments>
   [[gnu::always_inline]] void operator()(Arguments&... arguments) const {
-    measure_pixels(arguments...);
+    find_own(arguments...);
   }
 };
 
@@ -223,23 +223,39 @@ struct FindAllLevels {
 
 }  // namespace
 
-void measure_chunk(const FrameView& frame, const PixelRun& run, PixelChunk& chunk) {
+PixelLimits pixel_limits(const FrameView& frame) {
+  const OccupancyParams& p = frame.params;
+  const double half_voxel_m = 0.5 * p.voxel_size_m;
+  return {.measuring = frame.measuring,
+          .margin = free_margin(frame),
+          .min_depth_m = p.min_depth_m,
+          .max_depth_m = p.max_depth_m,
+          .min_z_m = frame.min_z_m,
+          .max_z_m = frame.max_z_m,
+          .max_sigma_m = max_sigma_m(p),
+          .exact_sigma_m = half_voxel_m,
+          .max_clearing_m = p.max_clearing_m};
+}
+
+void measure_chunk(const DisparityImage& image, const PixelLimits& limits, const PixelRun& run,
+                   PixelChunk& chunk, VectorTarget target) {
   chunk.count = run.count;
-  const ChunkLimits limits = limits_of(frame);
-  const ChunkInput in = input_of(frame.disparity, run);
-  ChunkAnswers answers;
-  on_best_target(MeasurePixels{}, limits, in, run, answers, chunk);
-  store(answers, chunk);
+  const ChunkInput in = input_of(image, run);
+  run_on(target, MeasurePixels{}, limits, in, run, chunk);
+}
+
+void find_own_voxels(const PixelChunk& chunk, double voxel_size_m, OwnVoxels& out,
+                     VectorTarget target) {
+  PixelChunk::PerPixel<std::uint8_t> is_new;
+  run_on(target, FindOwn{}, chunk, voxel_size_m, out, is_new);
+  const std::uint64_t exact = bits_of_bytes(chunk.is_exact);
+  out.marks = bits_of_bytes(chunk.marks);
+  out.begins_run = out.marks & (bits_of_bytes(is_new) | (exact ^ exact << 1) | ~(out.marks << 1));
 }
 
 void compute_levels(const MinRampObservation& model, const PixelChunk& chunk, double voxel_size_m,
-                    AxisLevels& out) {
-  on_best_target(FindAllLevels{}, model, chunk, voxel_size_m, out);
-}
-
-void compute_levels(const PointObservation& model, const PixelChunk& chunk, double voxel_size_m,
-                    AxisLevels& out) {
-  on_best_target(FindAllLevels{}, model, chunk, voxel_size_m, out);
+                    AxisLevels& out, VectorTarget target) {
+  run_on(target, FindAllLevels{}, model, chunk, voxel_size_m, out);
 }
 
 }  // namespace stereovox

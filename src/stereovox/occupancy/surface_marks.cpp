@@ -1,84 +1,59 @@
 #include "stereovox/occupancy/surface_marks.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "stereovox/occupancy/frame_evidence.h"
+#include "stereovox/occupancy/voxel_mask.h"
 
 namespace stereovox {
 namespace {
 
-// The voxels near one point: [begin, end) along each axis of the world.
-struct NearVoxels {
-  Eigen::Vector3i begin, end;
+using LevelMarks = PixelChunk::PerPixel<LevelMark>;
+
+// The marks of the points for one voxel of each, and bit i when that of point i says something.
+struct JoinAxes {
+  [[gnu::always_inline]] void operator()(const AxisVoxels& x, const AxisVoxels& y,
+                                         const AxisVoxels& z, const PixelChunk& chunk,
+                                         LevelMarks& marks, std::uint64_t& says) const {
+    PixelChunk::PerPixel<std::uint8_t> is_said;
+    for (std::size_t i = 0; i < PixelChunk::kSize; ++i) {
+      const std::uint8_t level_xy = std::min(x.level[i], y.level[i]);
+      const std::uint8_t level = std::min(level_xy, z.level[i]);
+      const std::uint8_t is_inside = x.is_own[i] & y.is_own[i] & z.is_own[i];
+      marks[i] = {static_cast<unsigned>(x.place[i] | y.place[i] | z.place[i]), level, is_inside,
+                  chunk.is_exact[i]};
+      is_said[i] = (level > 0 ? 1 : 0) | is_inside;
+    }
+    says = bits_of_bytes(is_said);
+  }
 };
 
-// Calls visit(block, part) for each block that has a part of the voxels.
-template <class Visit>
-void for_each_block_of(const NearVoxels& near, Visit visit) {
-  const auto block_end = [](int voxel) { return (voxel | (kBlockSide - 1)) + 1; };
-  NearVoxels part;
-  for (int z = near.begin.z(); z < near.end.z(); z = part.end.z()) {
-    part.begin.z() = z, part.end.z() = std::min(near.end.z(), block_end(z));
-    for (int y = near.begin.y(); y < near.end.y(); y = part.end.y()) {
-      part.begin.y() = y, part.end.y() = std::min(near.end.y(), block_end(y));
-      for (int x = near.begin.x(); x < near.end.x(); x = part.end.x()) {
-        part.begin.x() = x, part.end.x() = std::min(near.end.x(), block_end(x));
-        visit(block_of(part.begin), part);
-      }
-    }
+// Adds the marks of the voxels (x, y, z) of the points; successive ones mostly lie in one block.
+void add_marks(const AxisLevels& levels, const Eigen::Array3i& which, const PixelChunk& chunk,
+               SurfaceMarks<LevelMark>& to) {
+  const auto voxels = [&](std::size_t k) -> const AxisVoxels& {
+    return levels.voxels[k][static_cast<std::size_t>(which[static_cast<Eigen::Index>(k)])];
+  };
+  const AxisVoxels &x = voxels(0), &y = voxels(1), &z = voxels(2);
+  LevelMarks marks;
+  std::uint64_t rest = 0;
+  on_best_target(JoinAxes{}, x, y, z, chunk, marks, rest);
+  const std::uint64_t changes = x.changes_block | y.changes_block | z.changes_block;
+  while (rest != 0) {
+    const int first = std::countr_zero(rest);
+    const auto at = static_cast<std::size_t>(first);
+    const std::uint64_t changes_later = changes & ~std::uint64_t{1} << first;
+    const std::uint64_t before_change =
+        changes_later == 0 ? ~std::uint64_t{0} : (changes_later & -changes_later) - 1;
+    auto& list = to.list_of(block_of(
+        (Eigen::Array3i(levels.first[0][at], levels.first[1][at], levels.first[2][at]) + which)
+            .matrix()));
+    for (std::uint64_t here = rest & before_change; here != 0; here &= here - 1)
+      list.add(marks[static_cast<std::size_t>(std::countr_zero(here))]);
+    rest &= ~before_change;
   }
 }
-
-// What a chunk says of the voxels around its point `i`.
-class PointLevels {
- public:
-  PointLevels(const PixelChunk& chunk, const AxisLevels& levels, std::size_t i)
-      : levels_(levels), i_(i), is_exact_(chunk.is_exact[i] != 0) {}
-
-  NearVoxels near() const {
-    NearVoxels near;
-    for (int k = 0; k < 3; ++k) {
-      near.begin[k] = first(k);
-      near.end[k] = first(k) + levels_.count[static_cast<std::size_t>(k)][i_];
-    }
-    return near;
-  }
-  Eigen::Vector3i first_block() const { return block_of({first(0), first(1), first(2)}); }
-  bool is_in_one_block() const { return levels_.is_in_one_block[i_] != 0; }
-
-  // The part of the voxels that lies in the open block; `position`: of its first voxel.
-  void mark(const NearVoxels& part, int position, SurfaceMarks<LevelMark>& marks) const {
-    for (int z = part.begin.z(); z < part.end.z(); ++z, position += kBlockSide * kBlockSide) {
-      const int level_z = level(2, z);
-      for (int y = part.begin.y(), row = position; y < part.end.y(); ++y, row += kBlockSide)
-        mark_row(y, z, std::min(level_z, level(1, y)), part, row, marks);
-    }
-  }
-
- private:
-  int first(int axis) const { return levels_.first[static_cast<std::size_t>(axis)][i_]; }
-  int level(int axis, int voxel) const {
-    return levels_
-        .levels[static_cast<std::size_t>(axis)][static_cast<std::size_t>(voxel - first(axis))][i_];
-  }
-  void mark_row(int y, int z, int level_yz, const NearVoxels& part, int position,
-                SurfaceMarks<LevelMark>& marks) const {
-    const bool is_own_row = y == levels_.own[1][i_] && z == levels_.own[2][i_];
-    if (level_yz == 0 && !is_own_row) return;
-    for (int x = part.begin.x(); x < part.end.x(); ++x, ++position) {
-      const int level_here = std::min(level_yz, level(0, x));
-      const bool is_inside = is_own_row && x == levels_.own[0][i_];
-      if (level_here > 0)
-        marks.add({position, level_here - 1, is_inside, is_exact_});
-      else if (is_inside)
-        marks.add({position, 0, true, false});
-    }
-  }
-
-  const AxisLevels& levels_;
-  std::size_t i_;
-  bool is_exact_;
-};
 
 template <class Model>
 void mark_by_model(const Model& model, const FrameView& frame, const PointMeasurement& point,
@@ -89,9 +64,9 @@ void mark_by_model(const Model& model, const FrameView& frame, const PointMeasur
   for_each_observed_voxel(model, point, size_m, [&](const Eigen::Vector3i& voxel, float evidence) {
     const bool is_inside = voxel == own;
     if (evidence <= 0.0F && !is_inside) return;
-    marks.open(block_of(voxel));
-    marks.add({static_cast<std::uint16_t>(position_in_block(voxel)), is_inside, is_exact_point,
-               evidence});
+    marks.list_of(block_of(voxel))
+        .add({static_cast<std::uint16_t>(position_in_block(voxel)), is_inside, is_exact_point,
+              evidence});
   });
 }
 
@@ -99,48 +74,54 @@ void mark_by_profile(const FrameView& frame, const PointMeasurement& point,
                      SurfaceMarks<EvidenceMark>& marks) {
   for_each_profiled_voxel(
       *frame.profile, frame, point, [&](const Eigen::Vector3i& voxel, float evidence) {
-        marks.open(block_of(voxel));
-        marks.add({static_cast<std::uint16_t>(position_in_block(voxel)), false, false, evidence});
+        marks.list_of(block_of(voxel))
+            .add({static_cast<std::uint16_t>(position_in_block(voxel)), false, false, evidence});
       });
 }
 
 }  // namespace
 
-bool levels_suffice(const FrameView& frame) {
-  const bool goes_by_axes = std::visit([]<class Model>(const Model&) { return AxisModel<Model>; },
-                                       frame.params.observation);
-  return frame.profile == nullptr && goes_by_axes &&
-         std::holds_alternative<RankUnion>(frame.params.union_rule);
+MarkKind sufficient_marks(const FrameView& frame) {
+  const OccupancyParams& params = frame.params;
+  if (frame.profile != nullptr || !std::holds_alternative<RankUnion>(params.union_rule))
+    return MarkKind::evidence;
+  if (std::holds_alternative<PointObservation>(params.observation)) return MarkKind::points;
+  const bool goes_by_axes =
+      std::visit([]<class Model>(const Model&) { return AxisModel<Model>; }, params.observation);
+  return goes_by_axes ? MarkKind::levels : MarkKind::evidence;
+}
+
+void mark_points(const FrameView& frame, const PixelChunk& chunk, SurfaceMarks<PointsMark>& marks) {
+  OwnVoxels own;
+  find_own_voxels(chunk, frame.params.voxel_size_m, own);
+  marks.points_used += std::popcount(own.marks);
+  for (std::uint64_t rest = own.begins_run; rest != 0; rest &= rest - 1) {
+    const int first = std::countr_zero(rest);
+    const auto at = static_cast<std::size_t>(first);
+    const std::uint64_t later = ~std::uint64_t{1} << first;
+    const int end = std::countr_zero((own.begins_run | ~own.marks) & later);
+    marks.list_of(block_of({own.voxel[0][at], own.voxel[1][at], own.voxel[2][at]}))
+        .add({static_cast<std::uint16_t>(own.position[at]), static_cast<std::uint8_t>(end - first),
+              chunk.is_exact[at] != 0});
+  }
 }
 
 void mark_levels(const FrameView& frame, const PixelChunk& chunk, AxisLevels& levels,
                  SurfaceMarks<LevelMark>& marks) {
+  const std::uint64_t marking = bits_of_bytes(chunk.marks);
+  if (marking == 0) return;
+  marks.points_used += std::popcount(marking);
   std::visit(
       [&]<class Model>(const Model& model) {
         if constexpr (AxisModel<Model>)
           compute_levels(model, chunk, frame.params.voxel_size_m, levels);
       },
       frame.params.observation);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(chunk.count); ++i) {
-    if (chunk.marks[i] == 0) continue;
-    ++marks.points_used;
-    const PointLevels point(chunk, levels, i);
-    if (levels.only_level[i] > 0) {
-      marks.open(point.first_block());
-      marks.add({levels.first_position[i], levels.only_level[i] - 1, levels.is_only_own[i] != 0,
-                 chunk.is_exact[i] != 0});
-      continue;
-    }
-    if (point.is_in_one_block()) {
-      marks.open(point.first_block());
-      point.mark(point.near(), levels.first_position[i], marks);
-      continue;
-    }
-    for_each_block_of(point.near(), [&](const Eigen::Vector3i& block, const NearVoxels& part) {
-      marks.open(block);
-      point.mark(part, position_in_block(part.begin), marks);
-    });
-  }
+  Eigen::Array3i which;
+  for (which.z() = 0; which.z() < levels.largest_count[2]; ++which.z())
+    for (which.y() = 0; which.y() < levels.largest_count[1]; ++which.y())
+      for (which.x() = 0; which.x() < levels.largest_count[0]; ++which.x())
+        add_marks(levels, which, chunk, marks);
 }
 
 void mark_evidence(const FrameView& frame, const PixelRun& run, SurfaceMarks<EvidenceMark>& marks) {

@@ -1,11 +1,13 @@
 // Step 2 of the pipeline, first half: which voxels the points of a frame speak for, and how
-// strongly. Marks are kept in the order in which they come, in one array; a run of successive ones
-// in the same block is linked to that block's run before. So a mark costs one store.
+// strongly. Each block has a list of small pages of marks, so that a mark costs one store and those
+// of a block lie side by side.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "stereovox/occupancy/block_index.h"
@@ -16,10 +18,10 @@ namespace stereovox {
 
 // Evidence of one point for one voxel of a block.
 struct EvidenceMark {
-  std::uint16_t place = 0;  // in the block
-  bool is_inside = false;   // the point lies in this voxel
-  bool is_exact = false;    // its error is small against the voxel
-  float evidence = 0.0F;
+  std::uint16_t place;  // in the block
+  bool is_inside;       // the point lies in this voxel
+  bool is_exact;        // its error is small against the voxel
+  float evidence;
 
   int position() const { return place; }
   void add_to(VoxelEvidence& sum) const { sum.add(evidence, is_inside, is_exact); }
@@ -29,57 +31,93 @@ struct EvidenceMark {
 class LevelMark {
  public:
   LevelMark() = default;
-  LevelMark(int position, int level, bool is_inside, bool is_exact)
-      : bits_(static_cast<std::uint16_t>(position | level << kLevelBit |
-                                         int{is_inside} << kInsideBit |
-                                         int{is_exact} << kExactBit)) {}
+  // `level`: 0 nothing, else 1 + that of the evidence.
+  // Flags are numbers, 1 or 0: as bools they would be stored and loaded again.
+  [[gnu::always_inline]] LevelMark(unsigned position, unsigned level, unsigned is_inside,
+                                   unsigned is_exact) {
+    const unsigned says = level > 0 ? 1 : 0;
+    bits_ = static_cast<std::uint16_t>(position | (level - says) << kLevelBit |
+                                       is_inside << kInsideBit | (is_exact & says) << kExactBit);
+  }
 
   int position() const { return bits_ & (kVoxelsPerBlock - 1); }
   void add_to(VoxelEvidence& sum) const {
-    sum.add_level(bits_ >> kLevelBit & (VoxelEvidence::kLevels - 1), (bits_ >> kInsideBit & 1) != 0,
-                  bits_ >> kExactBit != 0);
+    static_assert(VoxelEvidence::kInside == 1 && VoxelEvidence::kExact == 2);
+    const unsigned bits = bits_;
+    sum.add_level(bits >> kLevelBit & (VoxelEvidence::kLevels - 1), bits >> kInsideBit);
   }
 
  private:
   static constexpr int kLevelBit = 9, kInsideBit = 14, kExactBit = 15;
   static_assert(1 << kLevelBit == kVoxelsPerBlock);
   static_assert(VoxelEvidence::kLevels == 1 << (kInsideBit - kLevelBit));
-  std::uint16_t bits_ = 0;
+  std::uint16_t bits_;
+};
+
+// Successive points in the same voxel, which see all of it and nothing else.
+struct PointsMark {
+  std::uint16_t place;  // in the block
+  std::uint8_t points;  // of a chunk
+  bool is_exact;
+
+  int position() const { return place; }
+  void add_to(VoxelEvidence& sum) const {
+    sum.add_level(VoxelEvidence::kLevels - 1,
+                  VoxelEvidence::kInside | (is_exact ? VoxelEvidence::kExact : 0), points);
+  }
 };
 
 template <class Mark>
 class SurfaceMarks {
- public:
-  static constexpr std::uint32_t kNoRun = ~std::uint32_t{0};
+  struct Page;
 
+ public:
   int points_used = 0;
 
-  // Later marks belong to this block.
-  void open(const Eigen::Vector3i& block) {
-    if (open_block_ != BlockIndex::kNone && block == open_place_) return;
-    close();
-    open_block_ = number_of(block);
-    open_place_ = block;
-    run_begin_ = marks_.size();
-  }
-  void add(const Mark& mark) { marks_.push_back(mark); }
-  void close() {
-    if (open_block_ == BlockIndex::kNone) return;
-    if (run_begin_ < marks_.size()) end_run();
-    open_block_ = BlockIndex::kNone;
+  SurfaceMarks() = default;
+  SurfaceMarks(const SurfaceMarks&) = delete;  // its lists know where it is
+  SurfaceMarks& operator=(const SurfaceMarks&) = delete;
+
+  // Where the marks of one block go. Good until another block is asked for.
+  class List {
+   public:
+    explicit List(SurfaceMarks& marks) : marks_(marks) {}
+    void add(const Mark& mark) {
+      if (room_ == 0) open_page();
+      last_->marks[--room_] = mark;
+    }
+
+   private:
+    friend class SurfaceMarks;
+    void open_page() {
+      last_ = marks_.new_page(last_);
+      room_ = kPageSize;
+    }
+
+    SurfaceMarks& marks_;
+    Page* last_ = nullptr;
+    std::size_t room_ = 0;  // in the last page, whose marks stand at its end
+  };
+  List& list_of(const Eigen::Vector3i& block) {
+    return lists_[static_cast<std::size_t>(number_of(block))];
   }
   const std::vector<Eigen::Vector3i>& blocks() const { return blocks_; }
 
-  // Calls visit(mark) for each mark of a block, runs from the last to the first; after close().
+  // Calls visit(mark) for each mark of a block.
   template <class Visit>
   void for_each_in_block(std::size_t block, Visit visit) const {
-    for (std::uint32_t run = last_run_[block]; run != kNoRun; run = runs_[run].previous)
-      for (std::uint32_t i = runs_[run].begin; i < runs_[run].end; ++i) visit(marks_[i]);
+    std::size_t first = lists_[block].room_;
+    for (const Page* page = lists_[block].last_; page != nullptr; page = page->previous, first = 0)
+      for (std::size_t i = first; i < kPageSize; ++i) visit(page->marks[i]);
   }
 
  private:
-  struct Run {
-    std::uint32_t begin, end, previous;
+  static constexpr std::size_t kPageBytes = 256, kPagesAtATime = 256;
+  static constexpr std::size_t kPageSize = (kPageBytes - sizeof(void*)) / sizeof(Mark);
+
+  struct Page {
+    Page* previous;
+    std::array<Mark, kPageSize> marks;
   };
   // A point near the corner of a block speaks for up to eight: each has a place of its own here.
   struct Recent {
@@ -87,11 +125,12 @@ class SurfaceMarks {
     int number = BlockIndex::kNone;
   };
 
-  void end_run() {
-    std::uint32_t& last = last_run_[static_cast<std::size_t>(open_block_)];
-    runs_.push_back(
-        {static_cast<std::uint32_t>(run_begin_), static_cast<std::uint32_t>(marks_.size()), last});
-    last = static_cast<std::uint32_t>(runs_.size() - 1);
+  Page* new_page(Page* previous) {
+    if (pages_used_ == pages_.size() * kPagesAtATime)
+      pages_.push_back(std::make_unique_for_overwrite<Page[]>(kPagesAtATime));
+    Page* const page = &pages_.back()[pages_used_++ % kPagesAtATime];
+    page->previous = previous;
+    return page;
   }
   int number_of(const Eigen::Vector3i& block) {
     Recent& recent = recent_[static_cast<std::size_t>((block.x() & 1) | (block.y() & 1) << 1 |
@@ -100,26 +139,25 @@ class SurfaceMarks {
     recent = {block, index_.find_or_insert(block)};
     if (recent.number == static_cast<int>(blocks_.size())) {
       blocks_.push_back(block);
-      last_run_.push_back(kNoRun);
+      lists_.emplace_back(*this);
     }
     return recent.number;
   }
 
   BlockIndex index_;
   std::vector<Eigen::Vector3i> blocks_;
-  std::vector<std::uint32_t> last_run_;
-  std::vector<Run> runs_;
-  std::vector<Mark> marks_;
+  std::vector<List> lists_;
+  std::vector<std::unique_ptr<Page[]>> pages_;
+  std::size_t pages_used_ = 0;
   std::array<Recent, 8> recent_{};
-  int open_block_ = BlockIndex::kNone;
-  Eigen::Vector3i open_place_ = Eigen::Vector3i::Zero();
-  std::size_t run_begin_ = 0;
 };
 
-// Whether levels are all that these parameters ask of the points, so that mark_levels may be used.
-bool levels_suffice(const FrameView& frame);
+// Which marks tell all that these parameters ask of the points.
+enum class MarkKind { evidence, levels, points };
+MarkKind sufficient_marks(const FrameView& frame);
 
 // Adds the marks of the points of these pixels.
+void mark_points(const FrameView& frame, const PixelChunk& chunk, SurfaceMarks<PointsMark>& marks);
 void mark_levels(const FrameView& frame, const PixelChunk& chunk, AxisLevels& levels,
                  SurfaceMarks<LevelMark>& marks);
 void mark_evidence(const FrameView& frame, const PixelRun& run, SurfaceMarks<EvidenceMark>& marks);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -44,6 +45,15 @@ class BlockVoxels {
     packed_[position] = {voxel.state, voxel.observations, time};
     if (voxel.ignorance > 0 && ignorance_ == nullptr) ignorance_ = std::make_unique<Ignorance>();
     if (ignorance_ != nullptr) (*ignorance_)[position] = voxel.ignorance;
+  }
+
+  // One more observation, without ignorance, at this time, which has this number.
+  void observe(std::size_t position, float state, std::uint32_t time_ms, std::uint16_t time) {
+    PackedVoxel& voxel = packed_[position];
+    if (voxel.observations == 0 || time_ms > times_ms_[voxel.time]) voxel.time = time;
+    if (voxel.observations < std::numeric_limits<std::uint16_t>::max()) ++voxel.observations;
+    voxel.state = state;
+    if (ignorance_ != nullptr) (*ignorance_)[position] = 0;
   }
 
   // For loops over a block: the voxel without its ignorance, and the number of a time, which stays

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <variant>
 
 #include "stereovox/core/parameters.h"
@@ -20,29 +21,33 @@ inline constexpr float kMaxFreeProfile = 0.48F, kMinOccupiedProfile = 0.52F;
 
 struct VoxelEvidence {
   static constexpr int kLevels = 32;  // evidence is counted to the nearest of 0, 1/31, ..., 1
+  static constexpr unsigned kInside = 1, kExact = 2;
 
   float largest = 0.0F, smallest = 1.0F;
-  std::uint32_t points_inside = 0, exact_points = 0;
+  std::array<std::uint32_t, 4> count_of_kind{};  // kInside, kExact, both or neither
   std::array<std::uint32_t, kLevels> count_of_level{};
 
   // `is_exact`: the point's error is small against the voxel.
   void add(float evidence, bool is_inside, bool is_exact = false) {
     largest = std::max(largest, evidence);
     smallest = std::min(smallest, evidence);
-    points_inside += is_inside ? 1 : 0;
-    exact_points += is_exact && evidence > 0.0F ? 1 : 0;
-    ++count_of_level[static_cast<std::size_t>(level_of(evidence))];
+    const bool is_said_exactly = is_exact && evidence > 0.0F;
+    add_level(static_cast<unsigned>(level_of(evidence)),
+              (is_inside ? kInside : 0) | (is_said_exactly ? kExact : 0));
   }
   // The nearest level of an evidence in [0, 1].
   [[gnu::always_inline]] static int level_of(float evidence) {
+    // A call of lround would keep loops from becoming vector instructions.
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings)
     return static_cast<int>(evidence * (kLevels - 1) + 0.5F);
   }
-  // All that unions by rank ask for. `level` is that of some evidence.
-  void add_level(int level, bool is_inside, bool is_exact) {
-    points_inside += is_inside ? 1 : 0;
-    exact_points += is_exact ? 1 : 0;
-    ++count_of_level[static_cast<std::size_t>(level)];
+  // All that unions by rank ask for, of so many equal points. `level` is that of some evidence.
+  void add_level(unsigned level, unsigned kind, std::uint32_t points = 1) {
+    count_of_kind[kind] += points;
+    count_of_level[level] += points;
   }
+  std::uint32_t points_inside() const { return count_of_kind[1] + count_of_kind[3]; }
+  std::uint32_t exact_points() const { return count_of_kind[2] + count_of_kind[3]; }
 };
 
 // The printed union: one point decides.
@@ -72,9 +77,11 @@ struct RankUnion {
   }
 
   double strength(const VoxelEvidence& evidence, double expected_points) const {
-    const double rank = std::max(
-        {1.0, std::ceil(quantile * expected_points), std::ceil(majority * evidence.exact_points)});
-    double seen = 0.0;
+    const double needed =
+        std::max({1.0, quantile * expected_points, majority * evidence.exact_points()});
+    constexpr double kMost = std::numeric_limits<std::uint32_t>::max();
+    const auto rank = static_cast<std::uint32_t>(std::ceil(std::min(needed, kMost)));
+    std::uint32_t seen = 0;
     for (int level = VoxelEvidence::kLevels - 1; level > 0; --level) {
       seen += evidence.count_of_level[static_cast<std::size_t>(level)];
       if (seen >= rank) return static_cast<double>(level) / (VoxelEvidence::kLevels - 1);
@@ -98,7 +105,7 @@ struct PrintedDensity {
   }
   double bonus(const VoxelEvidence& evidence, double) const {
     constexpr double kVolumeByPrinted = 8.0 / 6.0;  // 8 r^3 / 6 r^3
-    return lambda_voxels * kVolumeByPrinted * evidence.points_inside;
+    return lambda_voxels * kVolumeByPrinted * evidence.points_inside();
   }
 };
 
@@ -112,7 +119,7 @@ struct RelativeDensity {
     list("lambda", lambda, {0, 1}, "evidence added to a voxel whose face is fully covered");
   }
   double bonus(const VoxelEvidence& evidence, double expected_points) const {
-    return lambda * std::min(1.0, evidence.points_inside / expected_points);
+    return lambda * std::min(1.0, evidence.points_inside() / expected_points);
   }
 };
 

@@ -5,10 +5,27 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 
 #include "stereovox/occupancy/block_index.h"
 
 namespace stereovox {
+
+// One bit for each of 64 bytes (0 or 1), the first lowest. The product shifts the eight bytes of a
+// row so that byte i ends as bit 56 + i.
+[[gnu::always_inline]] inline std::uint64_t bits_of_bytes(
+    const std::array<std::uint8_t, 64>& bytes) {
+  static_assert(std::endian::native == std::endian::little);
+  constexpr std::uint64_t kShifts = 0x0102040810204080ULL;
+  constexpr int kLastByte = 56;
+  std::uint64_t bits = 0;
+  for (std::size_t row = 0; row < bytes.size(); row += 8) {
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, bytes.data() + row, sizeof eight);
+    bits |= (eight * kShifts) >> kLastByte << row;
+  }
+  return bits;
+}
 
 struct VoxelMask {
   static constexpr int kBits = 64;

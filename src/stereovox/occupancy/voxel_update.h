@@ -12,10 +12,9 @@
 namespace stereovox {
 
 // Seconds since the voxel was last seen; 0 when the frame is older than that.
-inline double age_s(const Voxel& voxel, std::uint32_t stamp_ms) {
+inline double age_s(std::uint32_t last_seen_ms, std::uint32_t stamp_ms) {
   constexpr double kSecondsPerMillisecond = 1e-3;
-  return stamp_ms > voxel.last_seen_ms ? (stamp_ms - voxel.last_seen_ms) * kSecondsPerMillisecond
-                                       : 0.0;
+  return stamp_ms > last_seen_ms ? (stamp_ms - last_seen_ms) * kSecondsPerMillisecond : 0.0;
 }
 
 inline VoxelBelief belief_of(const Voxel& voxel) {
@@ -32,7 +31,7 @@ inline void store(const VoxelBelief& belief, std::uint32_t stamp_ms, Voxel& voxe
   if (voxel.observations == 1 || stamp_ms > voxel.last_seen_ms) voxel.last_seen_ms = stamp_ms;
 }
 
-// Eq. (14).
+// Eq. (14), for one voxel.
 inline void update_voxel(float observation, double credibility, double initial_state,
                          std::uint32_t stamp_ms, Voxel& voxel) {
   const double state = is_known(voxel) ? static_cast<double>(voxel.state) : initial_state;
