@@ -22,8 +22,7 @@ struct DisparityOptions {
   ConfigOptions config;
 };
 
-GrayImage load(const std::string& path) {
-  const LoadedImage loaded = read_gray_image(path);
+GrayImage with_warning(const std::string& path, const LoadedImage& loaded) {
   if (!loaded.conversion.empty()) warn(path + ": " + loaded.conversion);
   return loaded.image;
 }
@@ -37,7 +36,10 @@ void check_size(const std::string& path, const GrayImage& image, int width, int 
 
 // Without a calibration the images are taken as rectified already.
 RectifiedPair rectified_pair(const DisparityOptions& options, const RectificationParams& params) {
-  const GrayImage left = load(options.left), right = load(options.right);
+  int used_bits = 0;
+  const LoadedPair loaded = read_gray_pair(options.left, options.right, used_bits);
+  const GrayImage left = with_warning(options.left, loaded.left);
+  const GrayImage right = with_warning(options.right, loaded.right);
   check_size(options.right, right, left.width(), left.height(), "the left image");
   if (options.calibration.empty()) return {0, left, right, {}, {}};
   const StereoRig rig = read_plain_calibration(options.calibration);

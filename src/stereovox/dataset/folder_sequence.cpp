@@ -90,21 +90,20 @@ class FolderSequence final : public StereoSequence {
 
  private:
   StereoFrame read(const ListedPair& pair) {
-    StereoFrame frame{
-        pair.stamp_ns, pair.index, pair.left.filename().string(), read_checked(pair.left), {}};
-    frame.right = read_checked(pair.right);
-    return frame;
+    LoadedPair loaded = read_gray_pair(pair.left, pair.right, used_bits_);
+    check(pair.left, loaded.left);
+    check(pair.right, loaded.right);
+    return {pair.stamp_ns, pair.index, pair.left.filename().string(), loaded.left.image,
+            loaded.right.image};
   }
 
-  GrayImage read_checked(const fs::path& path) {
-    LoadedImage loaded = read_gray_image(path);
+  void check(const fs::path& path, const LoadedImage& loaded) {
     const GrayImage& image = loaded.image;
     if (image.width() != rig_.left.pinhole.width || image.height() != rig_.left.pinhole.height)
       throw Error(size_complaint(path, image.width(), image.height(), rig_));
     if (!loaded.conversion.empty() && conversions_.insert(loaded.conversion).second)
       listing_.info.remarks.push_back(fmt::format("images are converted: {}; first: {}",
                                                   loaded.conversion, path.filename().string()));
-    return loaded.image;
   }
 
   void skip(const ListedPair& pair, const std::string& reason) {
@@ -123,6 +122,7 @@ class FolderSequence final : public StereoSequence {
   SequenceParams params_;
   std::size_t next_ = 0;
   std::vector<SkippedPair> skipped_;
+  int used_bits_ = 0;  // of the images so far: all are scaled alike from the brightest on
   std::set<std::string> conversions_;  // already remarked
 };
 

@@ -18,7 +18,8 @@ namespace stereovox {
 namespace {
 
 constexpr std::uint64_t kMaxImageBytes = 1ULL << 30;
-constexpr double kMaxOf8Bit = 255.0, kMaxOf16Bit = 65535.0;
+constexpr double kMaxOf8Bit = 255.0;
+constexpr int kBitsOf8 = 8, kBitsOf16 = 16;
 
 struct Decoded {
   cv::Mat pixels;
@@ -42,9 +43,23 @@ Decoded decode(const std::filesystem::path& path) {
   return decoded;
 }
 
-// 8 bit, with the file's largest value at 255.
-cv::Mat scaled_to_8_bit(const Decoded& decoded) {
-  const double type_max = decoded.pixels.depth() == CV_16U ? kMaxOf16Bit : kMaxOf8Bit;
+bool states_no_depth(const Decoded& decoded) {
+  return decoded.pixels.depth() == CV_16U && decoded.header.max_value == 0;
+}
+
+// The fewest bits of those that cameras have which hold the largest value of a 16-bit file.
+int used_bits_of(const Decoded& decoded) {
+  if (!states_no_depth(decoded)) return kBitsOf8;
+  double largest = 0;
+  cv::minMaxIdx(decoded.pixels.reshape(1), nullptr, &largest);
+  int bits = kBitsOf8;
+  while (largest >= (1 << bits)) bits += 2;
+  return bits;
+}
+
+// 8 bit, with the file's largest possible value at 255.
+cv::Mat scaled_to_8_bit(const Decoded& decoded, int used_bits) {
+  const double type_max = states_no_depth(decoded) ? (1 << used_bits) - 1 : kMaxOf8Bit;
   const double max_value = decoded.header.max_value > 0 ? decoded.header.max_value : type_max;
   if (max_value == kMaxOf8Bit && decoded.pixels.depth() == CV_8U) return decoded.pixels;
   cv::Mat scaled;
@@ -59,10 +74,13 @@ cv::Mat1b to_gray(const cv::Mat& pixels) {
   return gray;
 }
 
-std::string conversion_of(const Decoded& decoded) {
+std::string conversion_of(const Decoded& decoded, int used_bits) {
   const int channels = decoded.pixels.channels(), max_value = decoded.header.max_value;
-  std::vector<std::string_view> parts;
-  if (decoded.pixels.depth() == CV_16U) parts.push_back("16 bit, scaled to 8");
+  std::vector<std::string> parts;
+  if (decoded.pixels.depth() == CV_16U)
+    parts.push_back(states_no_depth(decoded) && used_bits < kBitsOf16
+                        ? fmt::format("16 bit of which {} are used, scaled to 8", used_bits)
+                        : "16 bit, scaled to 8");
   if (decoded.pixels.depth() == CV_8U && max_value > 0 && max_value < kMaxOf8Bit)
     parts.push_back("less than 8 bit, scaled to 8");
   if (channels > 1 && !decoded.header.is_grey)
@@ -72,11 +90,22 @@ std::string conversion_of(const Decoded& decoded) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+LoadedImage converted(const Decoded& decoded, int used_bits) {
+  return {{to_gray(scaled_to_8_bit(decoded, used_bits))}, conversion_of(decoded, used_bits)};
+}
+
 }  // namespace
 
 LoadedImage read_gray_image(const std::filesystem::path& path) {
   const Decoded decoded = decode(path);
-  return {{to_gray(scaled_to_8_bit(decoded))}, conversion_of(decoded)};
+  return converted(decoded, used_bits_of(decoded));
+}
+
+LoadedPair read_gray_pair(const std::filesystem::path& left, const std::filesystem::path& right,
+                          int& used_bits) {
+  const Decoded decoded_left = decode(left), decoded_right = decode(right);
+  used_bits = std::max({used_bits, used_bits_of(decoded_left), used_bits_of(decoded_right)});
+  return {converted(decoded_left, used_bits), converted(decoded_right, used_bits)};
 }
 
 cv::Mat read_image(const std::filesystem::path& path) { return decode(path).pixels; }

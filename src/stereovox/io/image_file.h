@@ -16,8 +16,18 @@ struct LoadedImage {
 };
 
 // PNG, PGM, JPEG, BMP or TIFF of up to 64 megapixels: grey or colour, 8 or 16 bit, palette and
-// alpha.
+// alpha. 16 bits are scaled by the largest value that a PGM states; other files do not say how many
+// of their bits a camera filled, so those count as used that the largest value needs: 8, 10, 12, 14
+// or 16. Colour becomes 0.299 R + 0.587 G + 0.114 B.
 LoadedImage read_gray_image(const std::filesystem::path& path);
+
+// Both images scaled alike: by the bits that either of them uses, and by no fewer than `used_bits`,
+// which afterwards says by how many. Handed from pair to pair it keeps dark ones dark.
+struct LoadedPair {
+  LoadedImage left, right;
+};
+LoadedPair read_gray_pair(const std::filesystem::path& left, const std::filesystem::path& right,
+                          int& used_bits);
 
 // The pixels as stored: 8 or 16 bit, 1 (grey), 3 (BGR) or 4 (BGRA) channels.
 cv::Mat read_image(const std::filesystem::path& path);

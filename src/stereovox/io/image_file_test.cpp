@@ -110,6 +110,33 @@ TEST_F(ImageFile, SixteenBitIsScaledToEightAndSaid) {
   }
 }
 
+TEST_F(ImageFile, OnlyTheBitsOfSixteenThatAnImageNeedsAreScaled) {
+  const std::pair<int, int> largest_and_bits[] = {{255, 8},   {256, 10},   {1023, 10}, {1024, 12},
+                                                  {4095, 12}, {16383, 14}, {16384, 16}};
+  for (const auto& [largest, bits] : largest_and_bits) {
+    cv::Mat1w deep(1, 2, static_cast<std::uint16_t>(largest));
+    deep(0, 1) = static_cast<std::uint16_t>(largest / 2);
+    const LoadedImage loaded = load(encoded(".png", deep));
+    EXPECT_EQ(loaded.image.pixels(0, 0), std::lround(255.0 * largest / ((1 << bits) - 1)));
+    EXPECT_EQ(loaded.image.pixels(0, 1), std::lround(255.0 * (largest / 2) / ((1 << bits) - 1)));
+    EXPECT_THAT(loaded.conversion, StartsWith(bits == 16 ? "16 bit, scaled" : "16 bit of which"));
+  }
+}
+
+TEST_F(ImageFile, BothImagesOfAPairAndThoseAfterItAreScaledAlike) {
+  const auto file = [&](const char* name, int gray) {
+    write_png(folder_.path() / name, cv::Mat1w(1, 1, static_cast<std::uint16_t>(gray)));
+    return folder_.path() / name;
+  };
+  const auto dark = file("dark.png", 800), bright = file("bright.png", 4095);
+  int used_bits = 0;
+  const LoadedPair dark_left = read_gray_pair(dark, bright, used_bits);
+  EXPECT_EQ(dark_left.left.image.pixels(0, 0), 50);
+  EXPECT_EQ(dark_left.right.image.pixels(0, 0), 255);
+  EXPECT_EQ(used_bits, 12);
+  EXPECT_EQ(read_gray_pair(dark, dark, used_bits).right.image.pixels(0, 0), 50);
+}
+
 TEST_F(ImageFile, ColourAndAlphaAreTurnedToGreyAndSaid) {
   const cv::Mat colour(4, 4, CV_8UC3, cv::Scalar(255, 0, 0));
   const LoadedImage blue = load(encoded(".png", colour));

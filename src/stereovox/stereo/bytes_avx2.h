@@ -56,6 +56,23 @@ struct BytesAvx2 {
     return _mm256_broadcastb_epi8(_mm_minpos_epu16(m));
   }
 
+  // Byte v[i] of `table`, which has 64; no byte of v is larger.
+  static V look_up(const std::uint8_t* table, V v) {
+    constexpr int kPart = 16, kBitsOfPart = 4;
+    V found = _mm256_setzero_si256();
+    for (int part = 0; part < 4; ++part) {
+      const V part_of_table = _mm256_broadcastsi128_si256(
+          _mm_loadu_si128(reinterpret_cast<const __m128i*>(table + part * kPart)));  // NOLINT
+      const V is_here =
+          _mm256_cmpeq_epi8(_mm256_and_si256(_mm256_srli_epi16(v, kBitsOfPart), spread(3)),
+                            spread(static_cast<std::uint8_t>(part)));
+      found = either(found, both(is_here, _mm256_shuffle_epi8(part_of_table, v)));
+    }
+    return found;
+  }
+
+  static constexpr bool kShiftsFast = false;
+  static constexpr bool kCountsOnesInOneStep = false;
   static V count_ones(V v) {
     const V ones_of_nibble = _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4,  //
                                               0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4);

@@ -1,5 +1,6 @@
-// Sixty-four bytes at a time on x86-64 with AVX-512 (F, BW). Only for files that are compiled for
-// it; bytes_portable.h gives the same operations everywhere.
+// Sixty-four bytes at a time on x86-64 with AVX-512 (F, BW, VBMI, BITALG: Ice Lake, Zen 4 and
+// later). Only for files that are compiled for it; bytes_portable.h gives the same operations
+// everywhere.
 #pragma once
 
 #include <immintrin.h>
@@ -38,13 +39,11 @@ struct BytesAvx512 {
 
   // Byte i is v[i - 1], and byte 0 the last of `before`.
   static V from_before(V before, V v) {
-    constexpr int kEights = 6, kBytes = 15;  // 16 bytes earlier, then 15 of them later
-    return _mm512_alignr_epi8(v, _mm512_alignr_epi64(v, before, kEights), kBytes);
+    return _mm512_permutex2var_epi8(before, _mm512_add_epi8(own_places(), spread(kSize - 1)), v);
   }
   // Byte i is v[i + 1], and the last byte the first of `after`.
   static V from_after(V v, V after) {
-    constexpr int kEights = 2;
-    return _mm512_alignr_epi8(_mm512_alignr_epi64(after, v, kEights), v, 1);
+    return _mm512_permutex2var_epi8(v, _mm512_add_epi8(own_places(), spread(1)), after);
   }
 
   // The smallest byte, in every byte.
@@ -56,14 +55,23 @@ struct BytesAvx512 {
     return _mm512_broadcastb_epi8(_mm_minpos_epu16(m));
   }
 
-  static V count_ones(V v) {
-    const V ones_of_nibble =
-        _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
-    const V nibble = _mm512_set1_epi8(15);
-    const V low = _mm512_and_si512(v, nibble);
-    const V high = _mm512_and_si512(_mm512_srli_epi16(v, 4), nibble);
-    return _mm512_add_epi8(_mm512_shuffle_epi8(ones_of_nibble, low),
-                           _mm512_shuffle_epi8(ones_of_nibble, high));
+  // Byte v[i] of `table`, which has 64; no byte of v is larger.
+  static V look_up(const std::uint8_t* table, V v) {
+    return _mm512_permutexvar_epi8(v, load(table));
+  }
+
+  static constexpr bool kShiftsFast = true;
+  static constexpr bool kCountsOnesInOneStep = true;
+  static V count_ones(V v) { return _mm512_popcnt_epi8(v); }
+
+ private:
+  // 0, 1, 2, ...
+  static V own_places() {
+    alignas(kSize) static constexpr std::uint8_t kPlaces[kSize] = {
+        0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
+        22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43,
+        44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
+    return load(kPlaces);
   }
 };
 

@@ -58,6 +58,14 @@ struct BytesPortable {
                __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14));
   }
 
+  // Byte v[i] of `table`, which has 64; no byte of v is larger.
+  static V look_up(const std::uint8_t* table, V v) {
+    for (int i = 0; i < kSize; ++i) v[i] = table[v[i]];
+    return v;
+  }
+
+  static constexpr bool kShiftsFast = false;
+  static constexpr bool kCountsOnesInOneStep = false;
   static V count_ones(V v) {
     v = v - ((v >> 1) & 0x55);
     v = (v & 0x33) + ((v >> 2) & 0x33);

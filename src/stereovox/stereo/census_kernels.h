@@ -24,8 +24,6 @@ inline constexpr int kLocalWidth_px = 5;
 inline constexpr std::uint8_t kNoLocalCost = 255;
 // Rows of bytes may be read and written this far beyond their end.
 inline constexpr int kRowSlack = 64;
-// Bytes between the candidates of two pixels in a row of path costs: a wall that no step crosses.
-inline constexpr int kPathWall = 32;
 
 // What pixels of one image row are compared by, byte by byte. The centre-symmetric census: bit b of
 // plane p says whether pixel k = 8 p + b of the upper half of a 9 x 7 window is at least as bright
@@ -34,18 +32,27 @@ struct PixelRow {
   std::array<std::uint8_t*, kPlanes> planes = {};
 };
 
+// The penalty for a disparity jump by the brightness step between two pixels; larger steps count as
+// the last one.
+inline constexpr int kPenaltySteps = 64;
+using PenaltyTable = std::array<std::uint8_t, kPenaltySteps>;
+
+// Penalties for a disparity jump between each pixel of a row and the one before it, and the ones
+// above, above to the left, above to the right.
+struct PenaltyRows {
+  std::uint8_t* beside = nullptr;
+  std::array<std::uint8_t*, 3> above = {};
+};
+
 // One row of images that semi-global aggregation has reached, and what it keeps from row to row.
 struct SweepRow {
   int width_px = 0;
   PixelRow left, right;  // candidate i of left pixel x is right pixel x + i
   std::uint8_t small_penalty = 0;
-  // Of a disparity jump between each pixel and the one before it, and the ones above, above to the
-  // left, above to the right.
-  const std::uint8_t* penalty_beside = nullptr;
-  std::array<const std::uint8_t*, 3> penalty_above = {};
-  // Path costs above their minimum, width x (candidates + kPathWall), for the three paths from
-  // above. Row y keeps pixel x in slot (first_slot + x) mod width: chosen so that the pixel that a
-  // path comes from lies in the same slot, and is overwritten where it is read.
+  PenaltyRows penalty;
+  // Path costs above their minimum, width x candidates, for the three paths from above. Row y keeps
+  // pixel x in slot (first_slot + x) mod width: chosen so that the pixel that a path comes from
+  // lies in the same slot, and is overwritten where it is read.
   std::array<std::uint8_t*, 3> paths_above = {};
   std::array<int, 3> first_slot = {};
   std::uint8_t* cost = nullptr;  // width x candidates
@@ -66,24 +73,31 @@ struct WinnerPointers {
   std::uint8_t* local_after = nullptr;
 };
 
+using RowPair = std::array<SweepRow, 2>;
+using WinnerPair = std::array<WinnerPointers, 2>;
+
 // Functions that depend on the number of candidates are listed by candidates / kCandidateStep - 1.
 struct CensusKernels {
   static constexpr int kSizes = kMaxCandidates / kCandidateStep;
   using Census = void (*)(const std::uint8_t* const* rows, int width_px, const PixelRow& out);
+  using Penalties = void (*)(const std::uint8_t* here, const std::uint8_t* above,
+                             const PenaltyTable& table, int width_px, const PenaltyRows& out);
   using Down = void (*)(const SweepRow& row);
-  using Along = void (*)(const SweepRow& row, const WinnerPointers& out);
+  using Along = void (*)(const RowPair& rows, const WinnerPair& out);
 
   // `rows` are the 7 rows about this one, each with 4 more pixels on either side.
   Census census = nullptr;
+  Penalties penalties = nullptr;
   // The costs and the three paths from above: fills cost and sum.
   std::array<Down, kSizes> down = {};
-  // The paths from the left and from the right, then the winners.
+  // The paths from the left and from the right of two rows, then their winners.
   std::array<Along, kSizes> along = {};
 };
 
 const CensusKernels& portable_census_kernels();
-const CensusKernels* avx2_census_kernels();    // nullptr on a machine without AVX2
-const CensusKernels* avx512_census_kernels();  // nullptr on a machine without AVX-512 BW
+const CensusKernels* avx2_census_kernels();  // nullptr on a machine without AVX2
+const CensusKernels*
+avx512_census_kernels();  // nullptr on a machine without AVX-512 BW, VBMI and BITALG
 const CensusKernels& fastest_census_kernels();
 
 }  // namespace stereovox

@@ -2,7 +2,7 @@
 // of candidates that do not fill its vectors are left to those of AVX2.
 #include "stereovox/stereo/census_kernels.h"
 
-#ifdef __AVX512BW__
+#ifdef __AVX512BITALG__
 #include "stereovox/stereo/bytes_avx2.h"
 #include "stereovox/stereo/bytes_avx512.h"
 #include "stereovox/stereo/census_kernels_impl.h"
@@ -11,9 +11,12 @@
 namespace stereovox {
 
 const CensusKernels* avx512_census_kernels() {
-#ifdef __AVX512BW__
+#ifdef __AVX512BITALG__
   static constexpr CensusKernels kernels = make_census_kernels<BytesAvx2, BytesAvx512>();
-  return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx2") ? &kernels : nullptr;
+  return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vbmi") &&
+                 __builtin_cpu_supports("avx512bitalg") && __builtin_cpu_supports("avx2")
+             ? &kernels
+             : nullptr;
 #else
   return nullptr;
 #endif

@@ -59,8 +59,27 @@ void census_row(const std::uint8_t* const* rows, int width_px, const PixelRow& o
   }
 }
 
-// Hamming distance of two census words that lie in four planes of bytes. Carry-save adders bring
-// the four planes to one of weight 1 and two of weight 2 before the ones are counted.
+template <class S>
+void penalty_rows(const std::uint8_t* here, const std::uint8_t* above, const PenaltyTable& table,
+                  int width_px, const PenaltyRows& out) {
+  using V = typename S::V;
+  for (int x = 0; x < width_px; x += S::kSize) {
+    const V own = S::load(here + x);
+    const auto fill = [&](const std::uint8_t* from, std::uint8_t* penalties) {
+      const V other = S::load(from + x);
+      const V step =
+          S::either(S::subtract_saturated(own, other), S::subtract_saturated(other, own));
+      S::store(penalties + x, S::look_up(table.data(), S::min(step, S::spread(kPenaltySteps - 1))));
+    };
+    fill(here - 1, out.beside);
+    fill(above, out.above[0]);
+    fill(above - 1, out.above[1]);
+    fill(above + 1, out.above[2]);
+  }
+}
+
+// Hamming distance of two census words that lie in four planes of bytes. Where counting the ones
+// takes long, carry-save adders first bring the four planes to one of weight 1 and two of weight 2.
 template <class S>
 [[gnu::always_inline]] inline typename S::V hamming(const typename S::V (&left)[kPlanes],
                                                     const PixelRow& right, int at) {
@@ -69,6 +88,9 @@ template <class S>
   const V b = S::differ(left[1], S::load(right.planes[1] + at));
   const V c = S::differ(left[2], S::load(right.planes[2] + at));
   const V d = S::differ(left[3], S::load(right.planes[3] + at));
+  if constexpr (S::kCountsOnesInOneStep)
+    return S::add(S::add(S::count_ones(a), S::count_ones(b)),
+                  S::add(S::count_ones(c), S::count_ones(d)));
   const V a_or_b = S::differ(a, b);
   const V abc = S::differ(a_or_b, c);
   const V carry_abc = S::either(S::both(a, b), S::both(c, a_or_b));
@@ -83,9 +105,9 @@ template <class S>
   const V there = S::load(right.planes[kSlopePlane] + at);
   const V difference =
       S::either(S::subtract_saturated(left, there), S::subtract_saturated(there, left));
-  V weighted = difference;
-  for (int i = 1; i < kSlopeWeight; ++i) weighted = S::add_saturated(weighted, difference);
-  return S::min(weighted, S::spread(kMaxSlopeCost));
+  static_assert(kSlopeWeight == 4);
+  const V twice = S::add_saturated(difference, difference);
+  return S::min(S::add_saturated(twice, twice), S::spread(kMaxSlopeCost));
 }
 
 template <class S>
@@ -132,18 +154,25 @@ template <class S, int N>
 }
 
 // The next pixel of a path from above, in place: `kept` holds the candidates of the pixel that it
-// comes from, above their minimum, between walls. Adds to the sums.
+// comes from, above their minimum. Adds to the sums.
 template <class S, int N>
 [[gnu::always_inline]] inline void step_from_above(const typename S::V (&cost)[N],
                                                    typename S::V small, typename S::V large,
                                                    std::uint8_t* kept, typename S::V (&sum)[N]) {
   using V = typename S::V;
   V next[N];
-  V all = S::spread(kMaxByte);
+  const V wall = S::spread(kMaxByte);
+  V all = wall, before = wall;
   for (int n = 0; n < N; ++n) {
     std::uint8_t* const at = kept + n * S::kSize;
-    const V beside = S::add_saturated(S::min(S::load(at - 1), S::load(at + 1)), small);
-    next[n] = S::add(cost[n], S::min(S::min(S::load(at), large), beside));
+    const V here = S::load(at);
+    const bool load_lower = n > 0 && !S::kShiftsFast, load_upper = n + 1 < N && !S::kShiftsFast;
+    const V lower = load_lower ? S::load(at - 1) : S::from_before(before, here);
+    const V upper = load_upper ? S::load(at + 1)
+                               : S::from_after(here, n + 1 < N ? S::load(at + S::kSize) : wall);
+    before = here;
+    const V beside = S::add_saturated(S::min(lower, upper), small);
+    next[n] = S::add(cost[n], S::min(S::min(here, large), beside));
     all = S::min(all, next[n]);
     sum[n] = S::add_saturated(sum[n], next[n]);
   }
@@ -166,9 +195,8 @@ void sweep_down(const SweepRow& row) {
       sum[n] = S::spread(0);
     }
     for (int k = 0; k < 3; ++k) {
-      std::uint8_t* const kept =
-          row.paths_above[k] + slot[k] * (kCandidates + kPathWall) + kPathWall;
-      step_from_above<S, N>(cost, small, S::spread(row.penalty_above[k][x]), kept, sum);
+      std::uint8_t* const kept = row.paths_above[k] + slot[k] * kCandidates;
+      step_from_above<S, N>(cost, small, S::spread(row.penalty.above[k][x]), kept, sum);
       slot[k] = slot[k] + 1 == row.width_px ? 0 : slot[k] + 1;
     }
     std::uint8_t* const sums = row.sum + x * kCandidates;
@@ -187,6 +215,21 @@ template <class S, int N>
   return found;
 }
 
+// Memory for the local costs of a pixel's candidates, between walls.
+template <int kCandidates>
+class WalledCosts {
+ public:
+  WalledCosts() {
+    for (std::uint8_t* const wall : {bytes_, bytes_ + kWall + kCandidates})
+      for (int i = 0; i < kWall; ++i) wall[i] = kNoLocalCost;
+  }
+  std::uint8_t* first() { return bytes_ + kWall; }
+
+ private:
+  static constexpr int kWall = 64;  // keeps the first one aligned
+  alignas(kWall) std::uint8_t bytes_[kWall + kCandidates + kWall];
+};
+
 // Local costs of all candidates about pixel x, summed over kLocalWidth_px pixels of the row.
 template <class S, int kCandidates>
 class LocalSums {
@@ -196,21 +239,20 @@ class LocalSums {
       sum_[n] = S::spread(0);
       for (int dx = -kHalf; dx <= kHalf; ++dx) sum_[n] = S::add(sum_[n], cost(x + dx, n));
     }
-    for (std::uint8_t* const wall : {bytes_, bytes_ + kWall + kCandidates})
-      for (int i = 0; i < kWall; ++i) wall[i] = kNoLocalCost;
   }
 
   // From the pixel before (direction 1) or after it (-1) to pixel x.
-  void move_to(int x, int direction) {
+  [[gnu::always_inline]] void move_to(int x, int direction) {
     const int out = x - direction * (kHalf + 1), in = x + direction * kHalf;
     for (int n = 0; n < N; ++n) sum_[n] = S::add(S::subtract(sum_[n], cost(out, n)), cost(in, n));
   }
 
   // Moves the winner at x to the best of it and its two neighbours; of equals to itself, then to
   // the one before. Without branches, which nobody could predict.
-  void choose(int x, const WinnerPointers& out) {
-    for (int n = 0; n < N; ++n) S::store(bytes_ + kWall + n * S::kSize, sum_[n]);
-    const std::uint8_t* const about = bytes_ + kWall + out.candidate[x];
+  [[gnu::always_inline]] void choose(int x, WalledCosts<kCandidates>& walled,
+                                     const WinnerPointers& out) const {
+    for (int n = 0; n < N; ++n) S::store(walled.first() + n * S::kSize, sum_[n]);
+    const std::uint8_t* const about = walled.first() + out.candidate[x];
     const int before = about[-1], here = about[0], after = about[1];
     const int is_before = before < here, is_after = after < (is_before != 0 ? before : here);
     const int step = is_after - (is_before & ~is_after);
@@ -221,7 +263,7 @@ class LocalSums {
   }
 
  private:
-  static constexpr int N = kCandidates / S::kSize, kHalf = kLocalWidth_px / 2, kWall = 32;
+  static constexpr int N = kCandidates / S::kSize, kHalf = kLocalWidth_px / 2;
 
   typename S::V cost(int x, int n) const {
     const int last = row_.width_px - 1, column = x < 0 ? 0 : (x > last ? last : x);
@@ -230,7 +272,6 @@ class LocalSums {
 
   const SweepRow& row_;
   typename S::V sum_[N];
-  std::uint8_t bytes_[kWall + kCandidates + kWall];
 };
 
 template <class S, int N>
@@ -258,33 +299,35 @@ class PathAlong {
       : row_(row),
         direction_(direction),
         small_(S::spread(row.small_penalty)),
-        path_(start_of_path<S, N>()) {}
+        path_(start_of_path<S, N>()),
+        local_(row, (row.width_px + 1) / 2 - (direction > 0 ? 1 : 0)) {}
 
   // Goes on to pixel x and adds to its sums.
-  void pass(int x) {
+  [[gnu::always_inline]] void pass(int x) {
     std::uint8_t* const sums = step(x);
     for (int n = 0; n < N; ++n)
       S::store(sums + n * S::kSize, S::add_saturated(S::load(sums + n * S::kSize), path_.cost[n]));
   }
 
   // Goes on to pixel x, whose sums want only this path, and finds its winner.
-  void finish(int x, LocalSums<S, kCandidates>& local, const WinnerPointers& out) {
+  [[gnu::always_inline]] void finish(int x, WalledCosts<kCandidates>& walled,
+                                     const WinnerPointers& out) {
     const std::uint8_t* const sums = step(x);
     typename S::V sum[N];
     for (int n = 0; n < N; ++n)
       sum[n] = S::add_saturated(S::load(sums + n * S::kSize), path_.cost[n]);
     find_winner<S, N>(sum, x, out);
-    local.move_to(x, direction_);
-    local.choose(x, out);
+    local_.move_to(x, direction_);
+    local_.choose(x, walled, out);
   }
 
  private:
   static constexpr int N = kCandidates / S::kSize;
 
-  std::uint8_t* step(int x) {
+  [[gnu::always_inline]] std::uint8_t* step(int x) {
     typename S::V cost[N];
     for (int n = 0; n < N; ++n) cost[n] = S::load(row_.cost + x * kCandidates + n * S::kSize);
-    const std::uint8_t penalty = row_.penalty_beside[direction_ > 0 ? x : x + 1];
+    const std::uint8_t penalty = row_.penalty.beside[direction_ > 0 ? x : x + 1];
     step_along_row<S, N>(cost, small_, S::spread(penalty), path_);
     return row_.sum + x * kCandidates;
   }
@@ -293,25 +336,61 @@ class PathAlong {
   const int direction_;
   const typename S::V small_;
   PathState<S, N> path_;
+  LocalSums<S, kCandidates> local_;  // of the pixel before the first one to finish
 };
 
-// Both paths go at once, because each of them alone waits for its last minimum most of the time.
-// They meet in the middle; from there on each one comes to pixels that the other has passed.
+// The two paths along a row. They meet in the middle; from there on each one comes to pixels that
+// the other has passed.
 template <class S, int kCandidates>
-void sweep_along(const SweepRow& row, const WinnerPointers& out) {
-  PathAlong<S, kCandidates> rightwards(row, 1), leftwards(row, -1);
-  int right = 0, left = row.width_px - 1;
-  for (; right < left; ++right, --left) {
-    rightwards.pass(right);
-    leftwards.pass(left);
+class PathsAlong {
+ public:
+  PathsAlong(const SweepRow& row, WalledCosts<kCandidates>& walled, const WinnerPointers& out)
+      : last_(row.width_px - 1),
+        walled_(walled),
+        out_(out),
+        rightwards_(row, 1),
+        leftwards_(row, -1) {}
+
+  // Goes on to the pixels that lie `step` from the ends of the row.
+  [[gnu::always_inline]] void pass(int step) {
+    rightwards_.pass(step);
+    leftwards_.pass(last_ - step);
   }
-  const bool meet_at_a_pixel = right == left;
-  if (meet_at_a_pixel) rightwards.pass(right++);
-  LocalSums<S, kCandidates> local_right(row, right - 1), local_left(row, left + 1);
-  if (meet_at_a_pixel) leftwards.finish(left--, local_left, out);
-  for (; left >= 0; ++right, --left) {
-    rightwards.finish(right, local_right, out);
-    leftwards.finish(left, local_left, out);
+  [[gnu::always_inline]] void finish(int step) {
+    rightwards_.finish(step, walled_, out_);
+    leftwards_.finish(last_ - step, walled_, out_);
+  }
+  // Where both come to the same pixel.
+  [[gnu::always_inline]] void meet(int step) {
+    rightwards_.pass(step);
+    leftwards_.finish(step, walled_, out_);
+  }
+
+ private:
+  const int last_;
+  WalledCosts<kCandidates>& walled_;
+  const WinnerPointers& out_;
+  PathAlong<S, kCandidates> rightwards_, leftwards_;
+};
+
+// Four paths go at once, because each of them alone waits for its last minimum most of the time.
+template <class S, int kCandidates>
+void sweep_along(const RowPair& rows, const WinnerPair& out) {
+  WalledCosts<kCandidates> walled;
+  PathsAlong<S, kCandidates> first(rows[0], walled, out[0]), second(rows[1], walled, out[1]);
+  const int width = rows[0].width_px, middle = width / 2;
+  int step = 0;
+  for (; step < middle; ++step) {
+    first.pass(step);
+    second.pass(step);
+  }
+  if (width % 2 != 0) {
+    first.meet(step);
+    second.meet(step++);
+  }
+  for (; step < width; ++step) {
+    first.finish(step);
+    second.finish(step);
   }
 }
 
@@ -319,6 +398,7 @@ void sweep_along(const SweepRow& row, const WinnerPointers& out) {
 template <class Odd, class Even = Odd>
 constexpr CensusKernels make_census_kernels() {
   return {.census = census_row<Even>,
+          .penalties = penalty_rows<Even>,
           .down = {sweep_down<Odd, 32>, sweep_down<Even, 64>, sweep_down<Odd, 96>,
                    sweep_down<Even, 128>, sweep_down<Odd, 160>, sweep_down<Even, 192>,
                    sweep_down<Odd, 224>, sweep_down<Even, 256>},

@@ -50,11 +50,11 @@ void sweep_stripe(const CensusPair& pair, const SweepParams& params, int first_r
   const int warm_up_row = std::max(0, first_row - kWarmUpRows);
   CensusSweep sweep(pair, params, warm_up_row, fastest_census_kernels());
   for (int v = warm_up_row; v < first_row; ++v) sweep.skip_row();
-  WinnerRow winners(pair.width_px);
+  std::array<WinnerRow, 2> winners = {WinnerRow(pair.width_px), WinnerRow(pair.width_px)};
   FeatureRows rows(pair.width_px, params.min_disparity_px, params.max_disparity_px());
-  for (int v = first_row; v < end_row; ++v) {
-    sweep.next_row(winners);
-    rows.fill(winners, v, features);
+  for (int v = first_row; v < end_row; v += 2) {
+    sweep.next_rows(winners);
+    for (int i = 0; i < std::min(2, end_row - v); ++i) rows.fill(winners[i], v + i, features);
   }
 }
 

@@ -20,7 +20,7 @@ struct SweepParams {
   int min_disparity_px = 0;
   int candidates = 64;  // a multiple of kCandidateStep, up to kMaxCandidates
   int small_penalty = 0;
-  std::array<std::uint8_t, 256> large_penalty = {};  // by the brightness step between two pixels
+  PenaltyTable large_penalty = {};
 
   int max_disparity_px() const { return min_disparity_px + candidates - 1; }
 };
@@ -40,13 +40,15 @@ class CensusSweep {
   CensusSweep(const CensusPair& pair, const SweepParams& params, int first_row,
               const CensusKernels& kernels);
 
-  void skip_row();                  // the paths pass, nobody wins
-  void next_row(WinnerRow& found);  // `found` has the images' width
+  void skip_row();  // the paths pass, nobody wins
+  // Of this row and the one below, both as wide as the images. Below the last row there is none:
+  // what is written of it means nothing.
+  void next_rows(std::array<WinnerRow, 2>& found);
 
  private:
-  void enter_row();
-  void read_penalties();
-  void clear_entries();
+  void give_memory(std::size_t row);
+  void pass_down(SweepRow& row);
+  void clear_entries(const SweepRow& row) const;
 
   const CensusPair& pair_;
   const SweepParams params_;
@@ -55,9 +57,9 @@ class CensusSweep {
   CensusRows pixels_;
   int y_;
   // Matrices only because they are aligned; each is one row.
-  cv::Mat1b cost_, sum_, penalties_;
+  std::array<cv::Mat1b, 2> cost_, sum_, penalties_;
   std::array<cv::Mat1b, 3> paths_above_;
-  SweepRow row_;
+  RowPair rows_;
 };
 
 // The same winners of rows [first_row, end_row), plainly: every cost and path in a volume, one

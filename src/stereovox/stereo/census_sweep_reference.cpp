@@ -50,7 +50,8 @@ class Reference {
             starts ? Costs(params_.candidates, 0) : path[y + dy - first_row_][x + dx];
         const int step =
             std::abs(nearest_pixel(left_, x, y) - nearest_pixel(left_, x + dx, y + dy));
-        path[y - first_row_][x] = next_on_path(before, x, y, params_.large_penalty[step]);
+        path[y - first_row_][x] =
+            next_on_path(before, x, y, params_.large_penalty[std::min(step, kPenaltySteps - 1)]);
         for (int c = 0; c < params_.candidates; ++c)
           sums[y - first_row_][x][c] += path[y - first_row_][x][c];
       }

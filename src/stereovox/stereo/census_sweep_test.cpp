@@ -24,7 +24,7 @@ SweepParams params_with(int min_disparity_px, int candidates) {
                      .candidates = candidates,
                      .small_penalty = 7,
                      .large_penalty = {}};
-  for (int step = 0; step < 256; ++step)
+  for (int step = 0; step < kPenaltySteps; ++step)
     params.large_penalty[step] = static_cast<std::uint8_t>(8 + 6000 / (step + 30));
   return params;
 }
@@ -39,9 +39,10 @@ std::vector<WinnerRow> swept(const RectifiedPair& pair, const SweepParams& param
   const CensusPair padded = pad_for_census(pair);
   CensusSweep sweep(padded, params, first_row, kernels);
   std::vector<WinnerRow> rows;
-  for (int y = first_row; y < padded.height_px; ++y) {
-    rows.emplace_back(padded.width_px);
-    sweep.next_row(rows.back());
+  for (int y = first_row; y < padded.height_px; y += 2) {
+    std::array<WinnerRow, 2> found = {WinnerRow(padded.width_px), WinnerRow(padded.width_px)};
+    sweep.next_rows(found);
+    rows.insert(rows.end(), found.begin(), found.begin() + std::min(2, padded.height_px - y));
   }
   return rows;
 }
@@ -75,10 +76,10 @@ TEST(CensusSweep, RowsThatAreSkippedStillGuideThePaths) {
   const CensusPair padded = pad_for_census(pair);
   CensusSweep sweep(padded, params, 0, fastest_census_kernels());
   for (int y = 0; y < 11; ++y) sweep.skip_row();
-  WinnerRow last(45);
-  sweep.next_row(last);
-  EXPECT_EQ(last, sweep_reference(pair, params, 0, 12).back());
-  EXPECT_NE(last, sweep_reference(pair, params, 11, 12).back());
+  std::array<WinnerRow, 2> last = {WinnerRow(45), WinnerRow(45)};
+  sweep.next_rows(last);
+  EXPECT_EQ(last[0], sweep_reference(pair, params, 0, 12).back());
+  EXPECT_NE(last[0], sweep_reference(pair, params, 11, 12).back());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "stereovox/core/parallel.h"
+#include "stereovox/stereo/row_kernels.h"
 #include "stereovox/stereo/speckles.h"
 
 namespace stereovox {
@@ -25,28 +26,6 @@ const std::array<std::int16_t, 256>& log_of_raised() {
     return logs;
   }();
   return table;
-}
-
-// In steps.
-void fill_disparities(const WinnerRow& winners, int max_disparity_px, std::int16_t* disparity) {
-  constexpr int kHalf = kStepsPerPixel / 2;
-  const std::uint8_t* const costs = winners.local.data();
-  const std::uint8_t* const costs_before = winners.local_before.data();
-  const std::uint8_t* const costs_after = winners.local_after.data();
-  const std::uint8_t* const candidates = winners.candidate.data();
-  const int width = static_cast<int>(winners.local.size());
-  for (int u = 0; u < width; ++u) {
-    const int cost = costs[u], before = costs_before[u], after = costs_after[u];
-    const int bend = before + after - 2 * cost;
-    const bool has_vertex = (before != kNoLocalCost) & (after != kNoLocalCost) & (before >= cost) &
-                            (after >= cost) & (bend > 0);
-    const float shift =
-        static_cast<float>(kHalf * (before - after)) / static_cast<float>(std::max(bend, 1));
-    constexpr float kRounding = 0.5F;
-    const int rounded = static_cast<int>(shift + (kHalf + kRounding)) - kHalf;
-    disparity[u] = static_cast<std::int16_t>((max_disparity_px - candidates[u]) * kStepsPerPixel -
-                                             (has_vertex ? rounded : 0));
-  }
 }
 
 void fill_log_ratios(const WinnerRow& winners, std::uint8_t* out) {
@@ -136,7 +115,11 @@ FeatureRows::FeatureRows(int width_px, int min_disparity_px, int max_disparity_p
       disparity_(width_px + 1) {}
 
 void FeatureRows::fill(const WinnerRow& winners, int v, MatchFeatures& features) {
-  fill_disparities(winners, max_disparity_px_, features.disparity[v]);
+  fastest_row_kernels().disparities({.candidate = winners.candidate.data(),
+                                     .before = winners.local_before.data(),
+                                     .here = winners.local.data(),
+                                     .after = winners.local_after.data()},
+                                    width_px_, max_disparity_px_, features.disparity[v]);
   find_owners(winners);
   fill_left_right(winners, features.disparity[v], features.left_right[v]);
   fill_log_ratios(winners, features.log_ratio[v]);

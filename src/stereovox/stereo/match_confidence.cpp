@@ -8,13 +8,7 @@
 namespace stereovox {
 namespace {
 
-constexpr int kHalfWindow_px = 2;
-constexpr int kWindow_px = 2 * kHalfWindow_px + 1;
-constexpr int kArea = kWindow_px * kWindow_px;
-// Variances are summed over steps of this many smaller ones: their squares then fit 32 bits.
-constexpr int kCoarse = 8;
-constexpr float kCoarsePerPixel = static_cast<float>(kStepsPerPixel) / kCoarse;
-constexpr float kToVariance = 1.0F / (kArea * kArea * kCoarsePerPixel * kCoarsePerPixel);
+constexpr int kHalfWindow_px = kVarianceSide_px / 2;
 
 constexpr double kSpan = ConfidenceModel::kMaxLogit - ConfidenceModel::kMinLogit;
 constexpr double kLevelsPerLogit = (CredenceTable::kLevels - 1) / kSpan;
@@ -28,13 +22,8 @@ struct Moments {
       : sum(width + 2 * kHalfWindow_px), square_sum(width + 2 * kHalfWindow_px) {}
 
   void add_row(const std::int16_t* disparity, int width) {
-    std::uint32_t* const sums = sum.data() + kHalfWindow_px;
-    std::uint32_t* const squares = square_sum.data() + kHalfWindow_px;
-    for (int u = 0; u < width; ++u) {
-      const std::int32_t coarse = disparity[u] / kCoarse;
-      sums[u] += static_cast<std::uint32_t>(coarse);
-      squares[u] += static_cast<std::uint32_t>(coarse * coarse);
-    }
+    fastest_row_kernels().add_moments(disparity, width, sum.data() + kHalfWindow_px,
+                                      square_sum.data() + kHalfWindow_px);
   }
 
   void repeat_ends() {
@@ -72,16 +61,7 @@ void fill_variance_row(const cv::Mat1s& disparity, int v, float* variance_px2) {
   for (int dv = -kHalfWindow_px; dv <= kHalfWindow_px; ++dv)
     column.add_row(disparity[std::clamp(v + dv, 0, disparity.rows - 1)], width);
   column.repeat_ends();
-  const std::uint32_t *const sums = column.sum.data(), *const squares = column.square_sum.data();
-  for (int u = 0; u < width; ++u) {
-    std::uint32_t sum = 0, square_sum = 0;
-    for (int k = 0; k < kWindow_px; ++k) {
-      sum += sums[u + k];
-      square_sum += squares[u + k];
-    }
-    variance_px2[u] =
-        kToVariance * static_cast<float>(static_cast<std::int32_t>(kArea * square_sum - sum * sum));
-  }
+  fastest_row_kernels().variances(column.sum.data(), column.square_sum.data(), width, variance_px2);
 }
 
 PixelFeatures features_at(const MatchFeatures& features, int v, int u, float variance_px2) {
@@ -117,17 +97,17 @@ void CredenceTable::fill_level_row(const MatchFeatures& features, int v,
   const int width = features.disparity.cols;
   std::vector<float> variance_px2(width);
   fill_variance_row(features.disparity, v, variance_px2.data());
-  const std::uint8_t* const log_ratio = features.log_ratio[v];
-  const std::uint8_t* const left_right = features.left_right[v];
-  const std::uint8_t* const local_cost = features.local_cost[v];
-  const auto term = [](float weight, std::uint8_t x) { return weight * static_cast<float>(x); };
-  for (int u = 0; u < width; ++u) {
-    const float sum = bias_ + term(log_ratio_, log_ratio[u]) + term(left_right_, left_right[u]) +
-                      variance_ * log_of_raised_variance(variance_px2[u]) +
-                      term(local_cost_, local_cost[u]);
-    const float limited = std::min(std::max(sum, 0.0F), static_cast<float>(kLevels - 1));
-    level[u] = static_cast<std::uint8_t>(static_cast<int>(limited));
-  }
+  const LevelRow row = {.log_ratio = features.log_ratio[v],
+                        .left_right = features.left_right[v],
+                        .local_cost = features.local_cost[v],
+                        .variance_px2 = variance_px2.data(),
+                        .bias = bias_,
+                        .of_log_ratio = log_ratio_,
+                        .of_left_right = left_right_,
+                        .of_local_cost = local_cost_,
+                        .of_variance = variance_,
+                        .max_level = kLevels - 1};
+  fastest_row_kernels().levels(row, width, level);
 }
 
 }  // namespace stereovox

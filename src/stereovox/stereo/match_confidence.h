@@ -7,10 +7,9 @@
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 
-namespace stereovox {
+#include "stereovox/stereo/row_kernels.h"
 
-// Between the stages of a matcher disparities are whole steps of this part of a pixel.
-inline constexpr int kStepsPerPixel = 32;
+namespace stereovox {
 
 // What a matcher found before it rejected anything; each image has the left image's size.
 struct MatchFeatures {
@@ -27,7 +26,6 @@ struct MatchFeatures {
 inline constexpr int kLogRatioSteps = 64;
 inline constexpr int kMaxLogRatio = 133;  // ln 8; larger features say no more
 inline constexpr int kMaxLeftRight = 4 * kStepsPerPixel;
-inline constexpr float kMaxVariance_px2 = 400.0F;
 inline constexpr double kRightWithin_px = 2.0;  // what a right disparity is
 
 // The features of one pixel in the units of the model.

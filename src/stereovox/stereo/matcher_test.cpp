@@ -113,6 +113,36 @@ class CensusMatcher : public testing::TestWithParam<MatcherParams> {};
 INSTANTIATE_TEST_SUITE_P(Matchers, CensusMatcher,
                          testing::Values(CensusSgmParams{}, AdaptiveWindowParams{}), name_of);
 
+// Of the pixels of the plane that are right within half a pixel, with the right image so many times
+// as bright.
+double share_right_with_gain(const MatcherParams& params, double gain) {
+  RectifiedPair pair = synthetic_pair(kSize, slanted);
+  const double darkest = std::min(1.0, 1.0 / gain);  // so that no image is clipped
+  pair.left.pixels = pair.left.pixels * darkest;
+  pair.right.pixels = pair.right.pixels * (darkest * gain);
+  return share_right(match(pair, params), {64, 16, 240, 208}, 0.5);
+}
+
+TEST_P(CensusMatcher, OneCameraMayExposeTwiceAsLongAsTheOther) {
+  const double alike = share_right_with_gain(GetParam(), 1);
+  for (const double gain : {0.5, 0.8, 1.25, 2.0})
+    EXPECT_GT(share_right_with_gain(GetParam(), gain), alike - 0.02) << gain;
+}
+
+TEST_P(CensusMatcher, ImagesOfTwelveMegapixelsAndOddWidthsAreMatched) {
+  for (const cv::Size size : {cv::Size(4096, 3072), cv::Size(4095, 37)}) {
+    RectifiedPair pair;
+    pair.right.pixels = random_texture(size, 5);
+    constexpr int kShift_px = 21;
+    pair.left.pixels = cv::Mat1b::zeros(size);
+    pair.right.pixels.colRange(0, size.width - kShift_px)
+        .copyTo(pair.left.pixels.colRange(kShift_px, size.width));
+    const DisparityImage found = match(pair, GetParam(), 2);
+    const cv::Mat1b is_right = cv::abs(found.disparity_px - kShift_px) < 0.1F;
+    EXPECT_GT(cv::countNonZero(is_right), 0.97 * size.area());
+  }
+}
+
 TEST_P(CensusMatcher, NoiseBetweenCamerasIsNoSurface) {
   for (const unsigned levels : {2U, 3U, 5U, 16U, 256U}) {
     std::mt19937 random(7);

@@ -95,6 +95,7 @@ void choose_row(const ChoiceRow& row, const WinnerPointers& out) {
   SweepRow costs;
   costs.width_px = row.width_px;
   costs.cost = row.cost;
+  WalledCosts<kCandidates> walled;
   LocalSums<S, kCandidates> local(costs, 0);
   for (int x = 0; x < row.width_px; ++x) {
     const Sum* const before = row.before[row.arm_up[x]] + x * kCandidates;
@@ -106,7 +107,7 @@ void choose_row(const ChoiceRow& row, const WinnerPointers& out) {
     out.cost[x] = mean_cost(best.sum, row.area[x]);
     out.second[x] = mean_cost(best.second, row.area[x]);
     if (x > 0) local.move_to(x, 1);
-    local.choose(x, out);
+    local.choose(x, walled, out);
   }
 }
 

@@ -1,0 +1,69 @@
+// The loops over the pixels of a row that follow the search of a census matcher, compiled for AVX2
+// and for any machine from the same plain code; all give the same bytes. The rule about plain
+// pointers is that of census_kernels.h.
+#pragma once
+
+#include <cstdint>
+
+#include "stereovox/stereo/census_kernels.h"
+
+namespace stereovox {
+
+// Between the stages of a matcher disparities are whole steps of this part of a pixel.
+inline constexpr int kStepsPerPixel = 32;
+
+// Disparities are averaged over this many pixels either way: see smooth_disparities.h.
+inline constexpr int kSmoothReach_px = 4, kSmoothMembers = 2 * kSmoothReach_px + 1;
+// The variance of disparities is that of a square with this side.
+inline constexpr int kVarianceSide_px = 5;
+inline constexpr float kMaxVariance_px2 = 400.0F;
+
+// The three rows about one, sorted column by column, with one more column on either side.
+struct SortedRows {
+  std::int16_t *low = nullptr, *mid = nullptr, *high = nullptr;
+};
+
+// What the confidence of a row's pixels is made of, and what each weighs: see match_confidence.h.
+struct LevelRow {
+  const std::uint8_t *log_ratio = nullptr, *left_right = nullptr, *local_cost = nullptr;
+  const float* variance_px2 = nullptr;
+  float bias = 0, of_log_ratio = 0, of_left_right = 0, of_local_cost = 0, of_variance = 0;
+  int max_level = 0;
+};
+
+// The winners of a row and the local costs of them and their neighbours: see WinnerPointers.
+struct LocalRow {
+  const std::uint8_t *candidate = nullptr, *before = nullptr, *here = nullptr, *after = nullptr;
+};
+
+struct RowKernels {
+  // Vertices of the parabolas through the local costs, in steps.
+  using Disparities = void (*)(const LocalRow& row, int width_px, int max_disparity_px,
+                               std::int16_t* out);
+  using SortColumns = void (*)(const std::int16_t* above, const std::int16_t* here,
+                               const std::int16_t* below, int width_px, const SortedRows& out);
+  using Medians = void (*)(const SortedRows& rows, int width_px, std::int16_t* out);
+  // Means over those of kSmoothMembers rows that lie on the surface of the middle one.
+  using Means = void (*)(const std::int16_t* const* members, int width_px, std::int16_t* out);
+  // Adds the disparities and their squares; the squares may wrap around.
+  using AddMoments = void (*)(const std::int16_t* disparity, int width_px, std::uint32_t* sum,
+                              std::uint32_t* square_sum);
+  // From the moments of columns, two more at either end.
+  using Variances = void (*)(const std::uint32_t* sum, const std::uint32_t* square_sum,
+                             int width_px, float* variance_px2);
+  using Levels = void (*)(const LevelRow& row, int width_px, std::uint8_t* out);
+
+  Disparities disparities = nullptr;
+  SortColumns sort_columns = nullptr;
+  Medians medians = nullptr;
+  Means means = nullptr;
+  AddMoments add_moments = nullptr;
+  Variances variances = nullptr;
+  Levels levels = nullptr;
+};
+
+const RowKernels& portable_row_kernels();
+const RowKernels* avx2_row_kernels();  // nullptr on a machine without AVX2
+const RowKernels& fastest_row_kernels();
+
+}  // namespace stereovox

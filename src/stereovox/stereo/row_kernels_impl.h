@@ -1,0 +1,153 @@
+// The loops of row_kernels.h, included by one file for each kind of machine. They stay plain: the
+// compiler makes vectors of them.
+#pragma once
+
+#include "stereovox/stereo/row_kernels.h"
+
+namespace stereovox {
+namespace {
+
+using Step = std::int16_t;
+
+template <class T>
+[[gnu::always_inline]] constexpr T smaller(T a, T b) {
+  return b < a ? b : a;
+}
+template <class T>
+[[gnu::always_inline]] constexpr T larger(T a, T b) {
+  return a < b ? b : a;
+}
+
+void fill_disparities(const LocalRow& row, int width_px, int max_disparity_px,
+                      Step* __restrict out) {
+  constexpr int kHalf = kStepsPerPixel / 2;
+  const LocalRow r = row;
+  for (int u = 0; u < width_px; ++u) {
+    const int cost = r.here[u], before = r.before[u], after = r.after[u];
+    const int bend = before + after - 2 * cost;
+    const bool has_vertex = (before != kNoLocalCost) & (after != kNoLocalCost) & (before >= cost) &
+                            (after >= cost) & (bend > 0);
+    const float shift =
+        static_cast<float>(kHalf * (before - after)) / static_cast<float>(larger(bend, 1));
+    constexpr float kRounding = 0.5F;
+    const int rounded = static_cast<int>(shift + (kHalf + kRounding)) - kHalf;
+    out[u] = static_cast<Step>((max_disparity_px - r.candidate[u]) * kStepsPerPixel -
+                               rounded * static_cast<int>(has_vertex));
+  }
+}
+
+// The middle one of three.
+[[gnu::always_inline]] inline Step middle(Step a, Step b, Step c) {
+  return larger(smaller(a, b), smaller(larger(a, b), c));
+}
+
+// Small enough for the compiler to see what overlaps nothing.
+inline void sort_inner_columns(const Step* above, const Step* here, const Step* below, int width_px,
+                               Step* __restrict low, Step* __restrict mid, Step* __restrict high) {
+  for (int u = 0; u < width_px; ++u) {
+    const Step a = above[u], b = here[u], c = below[u];
+    low[u] = smaller(a, smaller(b, c));
+    mid[u] = middle(a, b, c);
+    high[u] = larger(a, larger(b, c));
+  }
+}
+
+void sort_columns(const Step* above, const Step* here, const Step* below, int width_px,
+                  const SortedRows& out) {
+  sort_inner_columns(above, here, below, width_px, out.low + 1, out.mid + 1, out.high + 1);
+  for (Step* const row : {out.low, out.mid, out.high}) {
+    row[0] = row[1];
+    row[width_px + 1] = row[width_px];
+  }
+}
+
+void fill_medians(const SortedRows& rows, int width_px, Step* __restrict out) {
+  const Step *const l = rows.low, *const m = rows.mid, *const h = rows.high;
+  for (int u = 0; u < width_px; ++u)
+    out[u] = middle(larger(l[u], larger(l[u + 1], l[u + 2])), middle(m[u], m[u + 1], m[u + 2]),
+                    smaller(h[u], smaller(h[u + 1], h[u + 2])));
+}
+
+// The step from `here` to `there`, or none when they belong to different surfaces. Steps wrap
+// around, but never to small ones: disparities have 15 bits.
+[[gnu::always_inline]] inline Step step_on_surface(Step here, Step there) {
+  const auto step = static_cast<Step>(there - here);
+  return step <= kStepsPerPixel && step >= -kStepsPerPixel ? step : Step{0};
+}
+
+// Rounded to the nearest.
+[[gnu::always_inline]] inline Step mean_step(Step sum) {
+  constexpr int kBits = 16, kReciprocal = ((1 << kBits) + kSmoothMembers / 2) / kSmoothMembers;
+  return static_cast<Step>((sum * kReciprocal + (1 << (kBits - 1))) >> kBits);
+}
+
+void fill_means(const Step* const* members, int width_px, Step* __restrict out) {
+  const Step* const own = members[kSmoothReach_px];
+  const Step* rows[kSmoothMembers];
+  for (int k = 0; k < kSmoothMembers; ++k) rows[k] = members[k];
+  for (int u = 0; u < width_px; ++u) {
+    Step sum = 0;
+    for (int k = 0; k < kSmoothMembers; ++k)
+      sum = static_cast<Step>(sum + step_on_surface(own[u], rows[k][u]));
+    out[u] = static_cast<Step>(own[u] + mean_step(sum));
+  }
+}
+
+// Variances are summed over steps of this many smaller ones: their squares then fit 32 bits.
+constexpr int kCoarse = 8;
+
+void add_moments(const Step* disparity, int width_px, std::uint32_t* __restrict sum,
+                 std::uint32_t* __restrict square_sum) {
+  for (int u = 0; u < width_px; ++u) {
+    const std::int32_t coarse = disparity[u] / kCoarse;
+    sum[u] += static_cast<std::uint32_t>(coarse);
+    square_sum[u] += static_cast<std::uint32_t>(coarse * coarse);
+  }
+}
+
+void fill_variances(const std::uint32_t* sums, const std::uint32_t* squares, int width_px,
+                    float* __restrict variance_px2) {
+  constexpr int kArea = kVarianceSide_px * kVarianceSide_px;
+  constexpr float kCoarsePerPixel = static_cast<float>(kStepsPerPixel) / kCoarse;
+  constexpr float kToVariance = 1.0F / (kArea * kArea * kCoarsePerPixel * kCoarsePerPixel);
+  for (int u = 0; u < width_px; ++u) {
+    std::uint32_t sum = 0, square_sum = 0;
+    for (int k = 0; k < kVarianceSide_px; ++k) {
+      sum += sums[u + k];
+      square_sum += squares[u + k];
+    }
+    variance_px2[u] =
+        kToVariance * static_cast<float>(static_cast<std::int32_t>(kArea * square_sum - sum * sum));
+  }
+}
+
+// log2(1 + variance) by straight lines between powers of two, as the bits of a float have it. Here
+// and below integers are limited, not floats: the compiler makes no vectors of those.
+[[gnu::always_inline]] inline float log_of_raised(float variance_px2) {
+  constexpr float kOnePerOctave = 0x1p-23F;
+  const auto bits_of = [](float x) { return __builtin_bit_cast(std::int32_t, x); };
+  const std::int32_t bits = smaller(bits_of(1.0F + variance_px2), bits_of(1.0F + kMaxVariance_px2));
+  return kOnePerOctave * static_cast<float>(bits - bits_of(1.0F));
+}
+
+void fill_levels(const LevelRow& row, int width_px, std::uint8_t* __restrict out) {
+  const LevelRow r = row;
+  for (int u = 0; u < width_px; ++u) {
+    const float sum = r.bias + r.of_log_ratio * static_cast<float>(r.log_ratio[u]) +
+                      r.of_left_right * static_cast<float>(r.left_right[u]) +
+                      r.of_variance * log_of_raised(r.variance_px2[u]) +
+                      r.of_local_cost * static_cast<float>(r.local_cost[u]);
+    out[u] = static_cast<std::uint8_t>(smaller(larger(static_cast<int>(sum), 0), r.max_level));
+  }
+}
+
+constexpr RowKernels kRowKernels = {.disparities = fill_disparities,
+                                    .sort_columns = sort_columns,
+                                    .medians = fill_medians,
+                                    .means = fill_means,
+                                    .add_moments = add_moments,
+                                    .variances = fill_variances,
+                                    .levels = fill_levels};
+
+}  // namespace
+}  // namespace stereovox

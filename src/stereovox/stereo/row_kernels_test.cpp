@@ -1,0 +1,82 @@
+// The plain tests of what these loops compute stand beside their users; here, that the machine does
+// not matter.
+#include "stereovox/stereo/row_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+#include <vector>
+
+namespace stereovox {
+namespace {
+
+constexpr int kPadding = 2 * kSmoothReach_px;
+
+template <class T>
+std::vector<T> random_row(int width, unsigned seed, int low, int high) {
+  std::mt19937 random(seed);
+  std::vector<T> row(width + kPadding);
+  for (T& value : row)
+    value =
+        static_cast<T>(low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1)));
+  return row;
+}
+
+// Everything that the kernels compute of random rows, one after the other.
+std::vector<double> results(const RowKernels& kernels, int width) {
+  std::array<std::vector<std::uint8_t>, 6> bytes;
+  for (unsigned i = 0; i < bytes.size(); ++i)
+    bytes[i] = random_row<std::uint8_t>(width, i, i % 2 == 0 ? 0 : 250, 255);
+  std::vector<std::int16_t> disparity(width), low(width + 2), mid(width + 2), high(width + 2),
+      median(width), mean(width);
+  kernels.disparities({.candidate = bytes[0].data(),
+                       .before = bytes[1].data(),
+                       .here = bytes[2].data(),
+                       .after = bytes[3].data()},
+                      width, 300, disparity.data());
+  std::array<std::vector<std::int16_t>, kSmoothMembers> rows;
+  std::array<const std::int16_t*, kSmoothMembers> members = {};
+  for (unsigned i = 0; i < rows.size(); ++i) {
+    rows[i] = random_row<std::int16_t>(width, i, -100, 100);
+    members[i] = rows[i].data();
+  }
+  const SortedRows sorted = {low.data(), mid.data(), high.data()};
+  kernels.sort_columns(members[0], members[1], disparity.data(), width, sorted);
+  kernels.medians(sorted, width, median.data());
+  kernels.means(members.data(), width, mean.data());
+  std::vector<std::uint32_t> sum(width + kPadding, 3), square_sum(width + kPadding, 1000);
+  for (const std::int16_t* const row : members)
+    kernels.add_moments(row, width, sum.data(), square_sum.data());
+  std::vector<float> variance_px2(width);
+  kernels.variances(sum.data(), square_sum.data(), width, variance_px2.data());
+  std::vector<std::uint8_t> level(width);
+  kernels.levels({.log_ratio = bytes[0].data(),
+                  .left_right = bytes[2].data(),
+                  .local_cost = bytes[4].data(),
+                  .variance_px2 = variance_px2.data(),
+                  .bias = 80.3F,
+                  .of_log_ratio = 0.61F,
+                  .of_left_right = -0.37F,
+                  .of_local_cost = -0.83F,
+                  .of_variance = -7.7F,
+                  .max_level = 254},
+                 width, level.data());
+  std::vector<double> all;
+  const auto append = [&](const auto& row) { all.insert(all.end(), row.begin(), row.end()); };
+  append(disparity);
+  append(median);
+  append(mean);
+  append(variance_px2);
+  append(level);
+  return all;
+}
+
+TEST(RowKernels, GiveTheSameOnEveryMachine) {
+  if (avx2_row_kernels() == nullptr) GTEST_SKIP() << "this machine has no AVX2";
+  for (const int width : {1, 2, 15, 16, 17, 63, 640, 1001})
+    EXPECT_EQ(results(*avx2_row_kernels(), width), results(portable_row_kernels(), width)) << width;
+}
+
+}  // namespace
+}  // namespace stereovox
