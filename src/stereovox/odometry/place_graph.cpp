@@ -135,34 +135,33 @@ void PlaceGraph::add_frame(std::int64_t stamp_ns, std::size_t keyframe,
       {stamp_ns, keyframe, inverse(keyframes_[keyframe].T_segment_camera) * T_segment_camera});
 }
 
+// True when the link gave a segment its place beside one that has it.
+bool PlaceGraph::place_across(const PoseLink& link,
+                              std::vector<std::optional<Placement>>& placements) const {
+  const Keyframe& from = keyframes_[static_cast<std::size_t>(link.from)];
+  const Keyframe& to = keyframes_[static_cast<std::size_t>(link.to)];
+  auto& known = placements[static_cast<std::size_t>(from.segment)];
+  auto& other = placements[static_cast<std::size_t>(to.segment)];
+  if (known.has_value() == other.has_value()) return false;
+  const SE3 T_from_to = from.T_segment_camera * link.T_from_to * inverse(to.T_segment_camera);
+  if (known)
+    other = {known->segment, known->T_first_segment * T_from_to};
+  else
+    known = {other->segment, other->T_first_segment * inverse(T_from_to)};
+  return true;
+}
+
 std::vector<std::optional<PlaceGraph::Placement>> PlaceGraph::connected_segments() const {
   int segments = 0;
   for (const Keyframe& keyframe : keyframes_) segments = std::max(segments, keyframe.segment + 1);
   std::vector<std::optional<Placement>> placements(static_cast<std::size_t>(segments));
-  const auto spread = [&] {
-    bool any = false;
-    for (const PoseLink& link : links_) {
-      const Keyframe& from = keyframes_[static_cast<std::size_t>(link.from)];
-      const Keyframe& to = keyframes_[static_cast<std::size_t>(link.to)];
-      auto& from_placement = placements[static_cast<std::size_t>(from.segment)];
-      auto& to_placement = placements[static_cast<std::size_t>(to.segment)];
-      if (from_placement.has_value() == to_placement.has_value()) continue;
-      const SE3 T_from_to_segment =
-          from.T_segment_camera * link.T_from_to * inverse(to.T_segment_camera);
-      if (from_placement)
-        to_placement = {from_placement->segment,
-                        from_placement->T_first_segment * T_from_to_segment};
-      else
-        from_placement = {to_placement->segment,
-                          to_placement->T_first_segment * inverse(T_from_to_segment)};
-      any = true;
-    }
-    return any;
-  };
   for (int segment = 0; segment < segments; ++segment) {
     auto& placement = placements[static_cast<std::size_t>(segment)];
     if (!placement) placement = Placement{segment, SE3{}};
-    while (spread()) {
+    bool spreads = true;
+    while (spreads) {
+      spreads = false;
+      for (const PoseLink& link : links_) spreads |= place_across(link, placements);
     }
   }
   return placements;

@@ -45,8 +45,6 @@ class PlaceGraph {
   // connects are one, with the number and the origin of the first of them.
   std::vector<PlacedFrame> placed_frames() const;
 
-  const std::vector<PoseLink>& links() const { return links_; }
-
  private:
   struct Frame {
     std::int64_t stamp_ns;
@@ -61,6 +59,8 @@ class PlaceGraph {
   std::vector<std::size_t> candidates() const;
   bool is_believable(const PoseLink& link) const;
   void save_memory();
+  bool place_across(const PoseLink& link, std::vector<std::optional<Placement>>& placements) const;
+  // Of each segment.
   std::vector<std::optional<Placement>> connected_segments() const;
 
   const FrameComparer& comparer_;
