@@ -14,7 +14,7 @@ namespace stereovox {
 
 struct DirectParams {
   double min_overlap = 0.4;
-  double min_correlation = 0.8;
+  double min_correlation = 0.98;  // motions wrong by 2 to 13 degrees reached 0.9 to 0.95
 
   void describe(ParameterList& list) {
     list("min_overlap", min_overlap, {0.0, 1.0},
