@@ -86,8 +86,8 @@ OdometryResult Odometry::accept(LeveledFrame& frame, const Comparison& compariso
                               .consistent = comparison.initial.consistent_count(),
                               .expected = comparison.points.expected,
                               .inliers = estimate.inliers,
-                              .level = static_cast<int>(comparison.level),
                               .rms_px = estimate.rms_px,
+                              .level = static_cast<int>(comparison.level),
                               .is_keyframe = needs_keyframe(comparison)};
   absorb_sightings(comparison);
   reference_ = places_.index_of(comparison.reference());
@@ -226,12 +226,12 @@ std::vector<Keyframe*> Odometry::local_keyframes(std::size_t reference) {
 }
 
 bool Odometry::needs_keyframe(const Comparison& comparison) const {
+  // Without corners only the very next frame is near enough to be compared.
+  if (comparison.is_direct) return true;
   const KeyframeParams& params = params_.keyframes;
   const Keyframe& reference = comparison.reference();
   const SE3 motion = inverse(reference.T_segment_camera) * comparison.estimate.T_reference_camera;
   const auto known = static_cast<double>(comparison.reference_points().features.size());
-  // Without corners only the very next frame is near enough to be compared.
-  if (comparison.is_direct) return true;
   return comparison.initial.consistent_count() < params.min_consistent_share * known ||
          motion.translation.norm() >
              params.max_shift * median_depth_m(comparer_.camera(comparison.level),

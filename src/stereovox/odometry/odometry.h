@@ -31,12 +31,13 @@ struct OdometryResult {
   // Of the twist x, in the camera's frame, in
   // T_keyframe_camera(true) = T_keyframe_camera * exp(x), the keyframe taken as exact.
   Matrix6d covariance = Matrix6d::Zero();
+  // All 0 on later frames where the brightness of all pixels gave the place (direct_alignment.h).
   int matches = 0;     // corners that look like one of the keyframe's
   int consistent = 0;  // those that agree on one rigid motion
   int expected = 0;    // points of the local keyframes that should be visible
   int inliers = 0;     // those seen where the refined motion puts them
-  int level = 0;       // how often the images were halved that gave the place
   double rms_px = 0;   // their reprojection error
+  int level = 0;       // how often the images were halved whose corners gave the place
   bool is_keyframe = false;
   std::string reason = {};  // why lost, with the numbers; empty when tracked
 };

@@ -248,7 +248,7 @@ TEST(Odometry, AWallWithoutCornersIsPassedByItsClouds) {
 
 TEST(Odometry, KeepsNoMoreKeyframesThanAllowedAndStillTracks) {
   OdometryParams params;
-  params.keyframes.memory_mb = 1.0;  // a fifth of what the frames below need
+  params.keyframes.memory_mb = 1.0;  // far less than the frames below need
   params.keyframes.max_shift = 0.001;
   Odometry odometry(kCamera, params);
   for (int frame = 0; frame < 40; ++frame) {
