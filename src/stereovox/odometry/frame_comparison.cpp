@@ -74,6 +74,10 @@ std::string doubt_about(const DirectAlignment& alignment, const DirectParams& pa
         "{:.0f} % of the keyframe is in view and correlates by {:.2f}, {:.0f} % and {} are needed",
         100.0 * alignment.overlap, alignment.correlation, 100.0 * params.min_overlap,
         params.min_correlation);
+  if (alignment.residual_ratio > params.max_residual_ratio)
+    return fmt::format(
+        "the keyframe looks {:.1f} times as different as its own two images, {} is allowed",
+        alignment.residual_ratio, params.max_residual_ratio);
   return "";
 }
 
@@ -143,9 +147,23 @@ std::vector<SurfaceLevel> FrameComparer::surfaces_of(LeveledFrame& frame) {
   for (std::size_t level = 1; level <= kDirectLevels; ++level) {
     const PairLevel& images = frame.at(level).images;
     if (images.pair.left.height() < kMinDirectHeight_px) break;
-    surfaces.push_back({images.pair.left, images.disparity.disparity_px});
+    surfaces.push_back({detail_of(images.pair), images.disparity.disparity_px});
   }
   return surfaces;
+}
+
+DirectAlignment FrameComparer::align(LeveledFrame& frame, const Keyframe& reference,
+                                     std::span<const SE3> starts_T_segment_camera) const {
+  std::vector<DetailPair> current;
+  for (std::size_t i = 0; i < reference.surfaces.size(); ++i)
+    current.push_back(detail_of(frame.at(i + 1).images.pair));
+  std::vector<DirectPair> coarse_to_fine;
+  for (std::size_t i = current.size(); i-- > 0;)
+    coarse_to_fine.push_back({direct_cameras_[i], reference.surfaces[i], current[i]});
+  std::vector<SE3> starts;
+  for (const SE3& T_segment_start : starts_T_segment_camera)
+    starts.push_back(inverse(reference.T_segment_camera) * T_segment_start);
+  return align_directly(coarse_to_fine, starts);
 }
 
 Comparison FrameComparer::compare_directly(LeveledFrame& frame, Keyframe& reference,
@@ -156,21 +174,11 @@ Comparison FrameComparer::compare_directly(LeveledFrame& frame, Keyframe& refere
     comparison.doubt = "the keyframe has forgotten its surfaces";
     return comparison;
   }
-  std::vector<DirectPair> coarse_to_fine;
-  for (std::size_t i = reference.surfaces.size(); i-- > 0;)
-    coarse_to_fine.push_back(
-        {direct_cameras_[i], reference.surfaces[i], frame.at(i + 1).images.pair.left});
-  DirectAlignment best;
-  for (const SE3& T_segment_start : starts_T_segment_camera) {
-    const DirectAlignment alignment =
-        align_directly(coarse_to_fine, inverse(reference.T_segment_camera) * T_segment_start);
-    // A sliver of both images may look alike by chance.
-    if (alignment.overlap * alignment.correlation > best.overlap * best.correlation)
-      best = alignment;
-  }
-  comparison.estimate.T_reference_camera = reference.T_segment_camera * best.T_reference_camera;
-  comparison.estimate.covariance = best.covariance;
-  comparison.doubt = doubt_about(best, params_.direct);
+  const DirectAlignment alignment = align(frame, reference, starts_T_segment_camera);
+  comparison.estimate.T_reference_camera =
+      reference.T_segment_camera * alignment.T_reference_camera;
+  comparison.estimate.covariance = alignment.covariance;
+  comparison.doubt = doubt_about(alignment, params_.direct);
   if (comparison.is_trusted())
     comparison.doubt = doubt_about_certainty(comparison.estimate, params_.quality);
   if (comparison.is_trusted())

@@ -96,6 +96,9 @@ class FrameComparer {
   static std::vector<SurfaceLevel> surfaces_of(LeveledFrame& frame);
 
  private:
+  DirectAlignment align(LeveledFrame& frame, const Keyframe& reference,
+                        std::span<const SE3> starts_T_segment_camera) const;
+
   std::vector<RectifiedCamera> cameras_;         // of each level, the full one first
   std::vector<RectifiedCamera> direct_cameras_;  // halved once, twice, ...
   const OdometryParams params_;

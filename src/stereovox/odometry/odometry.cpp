@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <utility>
 
 #include "stereovox/core/error.h"
 #include "stereovox/core/timestamp.h"
@@ -16,7 +17,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 // Motion is taken to go on steadily over a gap up to this many times the one before.
 constexpr double kMaxGapRatio = 3.0;
 // Turns since the last frame from which blank walls are aligned.
-constexpr std::array kTriedTurns_deg = {0.0, -8.0, 8.0};
+constexpr std::array kTriedTurns_deg = {0.0, -4.0, 4.0, -8.0, 8.0, -12.0, 12.0};
 
 Vector6d turn_about_y(double angle_deg) {
   Vector6d twist = Vector6d::Zero();
@@ -31,11 +32,16 @@ Odometry::Odometry(const RectifiedCamera& camera, const OdometryParams& params)
 
 OdometryResult Odometry::track(const RectifiedPair& pair, const DisparityImage& disparity) {
   check_sizes(pair, disparity);
-  LeveledFrame frame(pair, disparity, params_.features);
-  if (places_.keyframes().empty()) return start(frame);
+  auto frame = std::make_unique<LeveledFrame>(pair, disparity, params_.features);
+  const OdometryResult result = places_.keyframes().empty() ? start(*frame) : place(*frame);
+  if (result.status == OdometryStatus::tracked)
+    last_frame_ = result.is_keyframe ? nullptr : std::move(frame);
+  return result;
+}
 
-  const Comparison comparison =
-      comparer_.compare(frame, local_keyframes(reference_), {predicted_pose(pair.stamp_ns), last_});
+OdometryResult Odometry::place(LeveledFrame& frame) {
+  const Comparison comparison = comparer_.compare(frame, local_keyframes(reference_),
+                                                  {predicted_pose(frame.stamp_ns), last_});
   if (!comparison.is_trusted()) return search(frame, comparison);
   // The camera may be back where an earlier segment knew its way.
   if (const auto earlier = recognise(frame, true, 1))
@@ -90,6 +96,7 @@ OdometryResult Odometry::accept(LeveledFrame& frame, const Comparison& compariso
                               .level = static_cast<int>(comparison.level),
                               .is_keyframe = needs_keyframe(comparison)};
   absorb_sightings(comparison);
+  last_comparison_ = comparison;
   reference_ = places_.index_of(comparison.reference());
   remember_pose(frame.stamp_ns, result.T_segment_camera);
   candidate_.reset();
@@ -140,11 +147,12 @@ OdometryResult Odometry::search(LeveledFrame& frame, const Comparison& failed) {
   return lost(failed);
 }
 
-// Before a blank wall there are no corners, but only a frame right after a tracked one is near
+// Before a blank wall there are no corners, but the frame before, if it was tracked, is near
 // enough.
 std::optional<Comparison> Odometry::find_near_last_pose(
     LeveledFrame& frame, const std::optional<SE3>& T_segment_predicted) {
   if (candidate_) return std::nullopt;
+  if (last_frame_) add_keyframe(*std::exchange(last_frame_, nullptr), *last_comparison_);
   std::vector<SE3> starts;
   for (const double yaw_deg : kTriedTurns_deg)
     starts.push_back(last_->T_segment_camera * exp(turn_about_y(yaw_deg)));

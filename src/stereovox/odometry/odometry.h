@@ -12,6 +12,7 @@
 // depend on the sequence of frames only, not on threads.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,7 @@ class Odometry {
 
  private:
   void check_sizes(const RectifiedPair& pair, const DisparityImage& disparity) const;
+  OdometryResult place(LeveledFrame& frame);
   OdometryResult start(LeveledFrame& frame);
   OdometryResult accept(LeveledFrame& frame, const Comparison& comparison);
   OdometryResult accept_in_earlier_segment(LeveledFrame& frame, const Comparison& later,
@@ -84,6 +86,9 @@ class Odometry {
   PlaceGraph places_;          // of all segments
   std::size_t reference_ = 0;  // the keyframe that frames are compared with first
   std::optional<LastPose> last_, before_last_;
+  // The frame placed last, and how; none when it is a keyframe.
+  std::unique_ptr<LeveledFrame> last_frame_;
+  std::optional<Comparison> last_comparison_;
   std::optional<Keyframe> candidate_;  // a lost frame, perhaps the start of a new segment
   int segments_ = 1;                   // begun so far
   std::size_t next_recognised_ = 0;    // which keyframe to look for next

@@ -49,12 +49,12 @@ struct View {
   cv::Mat1f depth_m = cv::Mat1f(kCamera.pinhole.height, kCamera.pinhole.width);
 };
 
-// How the walls are painted: everywhere alike, or with large faint clouds from some x on.
+// How the walls are painted: everywhere alike, or with large clouds from some x on.
 struct Paint {
   double plain_from_x_m = 1e9;
 
   double brightness(const Eigen::Vector3d& p) const {
-    return p.x() > plain_from_x_m ? 50.0 + 100.0 * texture(p, 1.0)
+    return p.x() > plain_from_x_m ? 50.0 + 80.0 * texture(p, 1.0) + 25.0 * texture(p, 0.5)
                                   : 30.0 + 110.0 * texture(p, 0.3) + 90.0 * texture(p, 0.12);
   }
 };
