@@ -19,14 +19,26 @@ const cv::Size kSize(320, 240);
 double slanted(int u, int v) { return 20.0 + 0.03 * u - 0.04 * v; }
 
 std::string name_of(const testing::TestParamInfo<MatcherParams>& matcher) {
+  const auto* const windows = std::get_if<AdaptiveWindowParams>(&matcher.param);
+  if (windows != nullptr)
+    return names_of(WindowSupport{})[static_cast<std::size_t>(windows->support)];
   return std::visit([](const auto& p) { return std::string(p.kName); }, matcher.param);
+}
+
+AdaptiveWindowParams windows(WindowSupport support) {
+  AdaptiveWindowParams params;
+  params.support = support;
+  return params;
 }
 
 class EveryMatcher : public testing::TestWithParam<MatcherParams> {};
 
 INSTANTIATE_TEST_SUITE_P(Matchers, EveryMatcher,
                          testing::Values(SemiGlobalMatchingParams{}, BlockMatchingParams{},
-                                         CensusSgmParams{}, AdaptiveWindowParams{}),
+                                         CensusSgmParams{}, AdaptiveWindowParams{},
+                                         windows(WindowSupport::one_window),
+                                         windows(WindowSupport::five_windows),
+                                         windows(WindowSupport::nine_windows)),
                          name_of);
 
 double share_right(const DisparityImage& found, cv::Rect where, double tolerance_px) {
@@ -111,7 +123,10 @@ double density(const DisparityImage& found) {
 class CensusMatcher : public testing::TestWithParam<MatcherParams> {};
 
 INSTANTIATE_TEST_SUITE_P(Matchers, CensusMatcher,
-                         testing::Values(CensusSgmParams{}, AdaptiveWindowParams{}), name_of);
+                         testing::Values(CensusSgmParams{}, AdaptiveWindowParams{},
+                                         windows(WindowSupport::five_windows),
+                                         windows(WindowSupport::nine_windows)),
+                         name_of);
 
 // Of the pixels of the plane that are right within half a pixel, with the right image so many times
 // as bright.
