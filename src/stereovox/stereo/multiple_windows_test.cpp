@@ -59,7 +59,8 @@ TEST_P(MultipleWindowsAndReference, FindTheSameWinnersOnEveryMachine) {
     const MultipleWindows windows{.half_px = c.half_px, .neighbours = neighbours};
     const auto expected = multiple_windows_reference(pair, windows, c.min_disparity_px,
                                                      c.candidates, c.first_row, c.size.height);
-    for (const WindowKernels* kernels : {&portable_window_kernels(), avx2_window_kernels()}) {
+    for (const WindowKernels* kernels :
+         {&portable_window_kernels(), avx2_window_kernels(), avx512_window_kernels()}) {
       if (kernels == nullptr) continue;  // not on this machine
       EXPECT_TRUE(swept(pair, windows, c, *kernels) == expected) << number_of(neighbours);
     }

@@ -1,5 +1,6 @@
-// The inner loops of the adaptive windows, compiled for AVX2 and for any machine; all give the same
-// bytes. Candidates are those of census_kernels.h, and so is the rule about plain pointers.
+// The inner loops of the adaptive windows, compiled for AVX2, for AVX-512 and for any machine; all
+// give the same bytes. Candidates are those of census_kernels.h, and so is the rule about plain
+// pointers.
 #pragma once
 
 #include <array>
@@ -105,7 +106,8 @@ struct WindowKernels {
 };
 
 const WindowKernels& portable_window_kernels();
-const WindowKernels* avx2_window_kernels();  // nullptr on a machine without AVX2
+const WindowKernels* avx2_window_kernels();    // nullptr on a machine without AVX2
+const WindowKernels* avx512_window_kernels();  // or without AVX-512 BW, VBMI and BITALG
 const WindowKernels& fastest_window_kernels();
 
 }  // namespace stereovox

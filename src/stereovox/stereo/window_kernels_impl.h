@@ -79,6 +79,14 @@ struct ThreeSumsOut {
 };
 constexpr ThreeSumsOut kThreeSumsOut;
 
+struct Places {
+  Sum at[kMaxCandidates] = {};
+  constexpr Places() {
+    for (int i = 0; i < kMaxCandidates; ++i) at[i] = static_cast<Sum>(i);
+  }
+};
+constexpr Places kPlaces;
+
 struct BestSum {
   int candidate;
   Sum sum, second;  // second: of those that are not its neighbours
@@ -90,8 +98,11 @@ template <int kCandidates>
 [[gnu::always_inline]] inline BestSum best_of(const Sum* sums) {
   Sum smallest = kNoSum, first = kNoSum, second = kNoSum;
   for (int i = 0; i < kCandidates; ++i) smallest = smaller(smallest, sums[i]);
-  for (int i = 0; i < kCandidates; ++i)
-    first = smaller(first, sums[i] == smallest ? static_cast<Sum>(i) : kNoSum);
+  // Without a comparison, of which g++ 12 makes no vectors here.
+  for (int i = 0; i < kCandidates; ++i) {
+    const Sum differs = smaller(static_cast<Sum>(sums[i] - smallest), 1);
+    first = smaller(first, static_cast<Sum>(kPlaces.at[i] | static_cast<Sum>(-differs)));
+  }
   const Sum* const out = kThreeSumsOut.sums + kMaxCandidates - first;
   for (int i = 0; i < kCandidates; ++i)
     second = smaller(second, static_cast<Sum>(sums[i] | out[i]));
@@ -224,30 +235,33 @@ void choose_supported(const SupportedRow& row, const WinnerPointers& out) {
   }
 }
 
-template <class S, NeighbourWindows kNeighbours>
+template <class Odd, class Even, NeighbourWindows kNeighbours>
 constexpr std::array<WindowKernels::ChooseSupported, WindowKernels::kSizes> supported_choices() {
-  return {choose_supported<S, 32, kNeighbours>,  choose_supported<S, 64, kNeighbours>,
-          choose_supported<S, 96, kNeighbours>,  choose_supported<S, 128, kNeighbours>,
-          choose_supported<S, 160, kNeighbours>, choose_supported<S, 192, kNeighbours>,
-          choose_supported<S, 224, kNeighbours>, choose_supported<S, 256, kNeighbours>};
+  return {choose_supported<Odd, 32, kNeighbours>,  choose_supported<Even, 64, kNeighbours>,
+          choose_supported<Odd, 96, kNeighbours>,  choose_supported<Even, 128, kNeighbours>,
+          choose_supported<Odd, 160, kNeighbours>, choose_supported<Even, 192, kNeighbours>,
+          choose_supported<Odd, 224, kNeighbours>, choose_supported<Even, 256, kNeighbours>};
 }
 
-template <class S>
+// Even is for numbers of candidates that are even multiples of kCandidateStep, Odd for the others.
+template <class Odd, class Even = Odd>
 constexpr WindowKernels make_window_kernels() {
   return {
-      .census = census_row<S>,
-      .arms = grow_arms<S>,
-      .gather = {gather_row<S, 32>, gather_row<S, 64>, gather_row<S, 96>, gather_row<S, 128>,
-                 gather_row<S, 160>, gather_row<S, 192>, gather_row<S, 224>, gather_row<S, 256>},
-      .choose = {choose_row<S, 32>, choose_row<S, 64>, choose_row<S, 96>, choose_row<S, 128>,
-                 choose_row<S, 160>, choose_row<S, 192>, choose_row<S, 224>, choose_row<S, 256>},
-      .costs = {cost_row<S, 32>, cost_row<S, 64>, cost_row<S, 96>, cost_row<S, 128>,
-                cost_row<S, 160>, cost_row<S, 192>, cost_row<S, 224>, cost_row<S, 256>},
+      .census = census_row<Even>,
+      .arms = grow_arms<Even>,
+      .gather = {gather_row<Odd, 32>, gather_row<Even, 64>, gather_row<Odd, 96>,
+                 gather_row<Even, 128>, gather_row<Odd, 160>, gather_row<Even, 192>,
+                 gather_row<Odd, 224>, gather_row<Even, 256>},
+      .choose = {choose_row<Odd, 32>, choose_row<Even, 64>, choose_row<Odd, 96>,
+                 choose_row<Even, 128>, choose_row<Odd, 160>, choose_row<Even, 192>,
+                 choose_row<Odd, 224>, choose_row<Even, 256>},
+      .costs = {cost_row<Odd, 32>, cost_row<Even, 64>, cost_row<Odd, 96>, cost_row<Even, 128>,
+                cost_row<Odd, 160>, cost_row<Even, 192>, cost_row<Odd, 224>, cost_row<Even, 256>},
       .sum_boxes = {sum_boxes<32>, sum_boxes<64>, sum_boxes<96>, sum_boxes<128>, sum_boxes<160>,
                     sum_boxes<192>, sum_boxes<224>, sum_boxes<256>},
-      .choose_supported = {supported_choices<S, NeighbourWindows::none>(),
-                           supported_choices<S, NeighbourWindows::four>(),
-                           supported_choices<S, NeighbourWindows::eight>()}};
+      .choose_supported = {supported_choices<Odd, Even, NeighbourWindows::none>(),
+                           supported_choices<Odd, Even, NeighbourWindows::four>(),
+                           supported_choices<Odd, Even, NeighbourWindows::eight>()}};
 }
 
 }  // namespace
