@@ -131,18 +131,28 @@ cv::Ptr<cv::StereoMatcher> bm(int disparities) {
 }
 
 template <class Params>
-Contender our_contender(const Case& c, const RectifiedPair& pair) {
-  Params params;
+Contender our_contender(const std::string& name, Params params, const Case& c,
+                        const RectifiedPair& pair) {
   params.search.disparity_range_px = c.disparities;
-  return {Params::kName,
-          [params, &pair, c] { return match(pair, params, c.threads).disparity_px; }};
+  return {name, [params, &pair, c] { return match(pair, params, c.threads).disparity_px; }};
+}
+
+// adaptive_window with another support.
+Contender windows_contender(WindowSupport support, const Case& c, const RectifiedPair& pair) {
+  AdaptiveWindowParams params;
+  params.support = support;
+  const std::string& name = names_of(support)[static_cast<std::size_t>(support)];
+  return our_contender(name, params, c, pair);
 }
 
 std::vector<Contender> contenders(const Case& c, const RectifiedPair& pair) {
   return {opencv_contender(kPeer, sgbm(c.disparities, cv::StereoSGBM::MODE_SGBM_3WAY), pair),
           opencv_contender("opencv sgbm", sgbm(c.disparities, cv::StereoSGBM::MODE_SGBM), pair),
           opencv_contender("opencv bm", bm(c.disparities), pair),
-          our_contender<CensusSgmParams>(c, pair), our_contender<AdaptiveWindowParams>(c, pair)};
+          our_contender(CensusSgmParams::kName, CensusSgmParams{}, c, pair),
+          our_contender(AdaptiveWindowParams::kName, AdaptiveWindowParams{}, c, pair),
+          windows_contender(WindowSupport::five_windows, c, pair),
+          windows_contender(WindowSupport::nine_windows, c, pair)};
 }
 
 struct Check {

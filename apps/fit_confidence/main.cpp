@@ -1,4 +1,5 @@
-// Fits the confidence model of a census matcher: fit_confidence MATCHER FOLDER...
+// Fits the confidence model of a census matcher: fit_confidence MATCHER FOLDER...; MATCHER may be a
+// support of adaptive_window, too (nine_windows).
 // Each folder holds left.png, right.png and disp_gt.png (KITTI's form) or disp_gt.pfm. Noise that
 // shows no scene at all is learned from, too. Prints the model for stereo/<MATCHER>.cpp and how
 // reliable it is on the same pairs.
@@ -52,16 +53,24 @@ Row row_of(const PixelFeatures& f, int candidates) {
 using FindFeatures = std::function<MatchFeatures(const RectifiedPair&, int disparity_range_px)>;
 
 template <class Params>
-MatchFeatures find_features(const RectifiedPair& pair, int disparity_range_px) {
-  Params params;
-  params.search.disparity_range_px = disparity_range_px;
-  return match_features(pair, params, 1);
+FindFeatures finder_with(const Params& params) {
+  return [params](const RectifiedPair& pair, int disparity_range_px) {
+    Params wide = params;
+    wide.search.disparity_range_px = disparity_range_px;
+    return match_features(pair, wide, 1);
+  };
 }
 
+// The name of a matcher, or of a support of adaptive_window.
 FindFeatures finder_of(const std::string& matcher) {
-  if (matcher == CensusSgmParams::kName) return find_features<CensusSgmParams>;
-  if (matcher == AdaptiveWindowParams::kName) return find_features<AdaptiveWindowParams>;
-  throw UsageError(matcher + ": is no census matcher");
+  if (matcher == CensusSgmParams::kName) return finder_with(CensusSgmParams{});
+  if (matcher == AdaptiveWindowParams::kName) return finder_with(AdaptiveWindowParams{});
+  const auto supports = names_of(WindowSupport{});
+  const auto named = std::ranges::find(supports, matcher);
+  if (named == supports.end()) throw UsageError(matcher + ": is no census matcher");
+  AdaptiveWindowParams params;
+  params.support = static_cast<WindowSupport>(named - supports.begin());
+  return finder_with(params);
 }
 
 // Where there is no true disparity there is no sample; what is infinite nothing can match.

@@ -29,8 +29,9 @@ std::vector<ScanSample> samples_of_room(std::uint32_t seed, int threads) {
   for (int i = 0; i < static_cast<int>(simulation.trajectory().size()); ++i) {
     const StereoFrame frame = simulation.frame(i);
     const SE3& T_world_camera = simulation.trajectory()[static_cast<std::size_t>(i)].T_world_camera;
+    // What the network in the library was learned from.
     const DisparityImage disparity =
-        match({frame.stamp_ns, frame.left, frame.right, {}, {}}, MatcherParams{});
+        match({frame.stamp_ns, frame.left, frame.right, {}, {}}, SemiGlobalMatchingParams{});
     const PseudoScan scan =
         pseudo_scan(disparity, camera, T_world_camera, 0.0, frame.stamp_ns, PseudoScanParams{});
     for (const double cell_size_m : kCellSizes_m) {

@@ -15,8 +15,9 @@
 
 namespace stereovox {
 
-using MatcherParams = std::variant<SemiGlobalMatchingParams, BlockMatchingParams, CensusSgmParams,
-                                   AdaptiveWindowParams>;
+// The first one is the default.
+using MatcherParams = std::variant<CensusSgmParams, AdaptiveWindowParams, SemiGlobalMatchingParams,
+                                   BlockMatchingParams>;
 
 // The disparity image has the size of the left image. Disparities lie in
 // [min_disparity_px, min_disparity_px + disparity_range_px) and are > 0; 0 means none: no match, an

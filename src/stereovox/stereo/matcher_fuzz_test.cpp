@@ -63,6 +63,8 @@ CensusSgmParams random_sgm(Dice& dice) {
 
 AdaptiveWindowParams random_windows(Dice& dice) {
   AdaptiveWindowParams params{.search = random_search(dice)};
+  params.support = static_cast<WindowSupport>(dice.between(0, 3));
+  params.window_half_px = dice.between(1, kMaxWindowHalf_px);
   params.max_arm_px = dice.between(1, kMaxArm_px);
   params.arm_contrast_gray = dice.between(0, 255) / dice.between(1, 20);
   params.min_vote_share = 0.01 * dice.between(0, 100);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <opencv2/core.hpp>
@@ -19,14 +20,26 @@ const cv::Size kSize(320, 240);
 double slanted(int u, int v) { return 20.0 + 0.03 * u - 0.04 * v; }
 
 std::string name_of(const testing::TestParamInfo<MatcherParams>& matcher) {
+  const auto* const windows = std::get_if<AdaptiveWindowParams>(&matcher.param);
+  if (windows != nullptr)
+    return names_of(WindowSupport{})[static_cast<std::size_t>(windows->support)];
   return std::visit([](const auto& p) { return std::string(p.kName); }, matcher.param);
+}
+
+AdaptiveWindowParams windows(WindowSupport support) {
+  AdaptiveWindowParams params;
+  params.support = support;
+  return params;
 }
 
 class EveryMatcher : public testing::TestWithParam<MatcherParams> {};
 
 INSTANTIATE_TEST_SUITE_P(Matchers, EveryMatcher,
                          testing::Values(SemiGlobalMatchingParams{}, BlockMatchingParams{},
-                                         CensusSgmParams{}, AdaptiveWindowParams{}),
+                                         CensusSgmParams{}, AdaptiveWindowParams{},
+                                         windows(WindowSupport::one_window),
+                                         windows(WindowSupport::five_windows),
+                                         windows(WindowSupport::nine_windows)),
                          name_of);
 
 double share_right(const DisparityImage& found, cv::Rect where, double tolerance_px) {
@@ -111,7 +124,10 @@ double density(const DisparityImage& found) {
 class CensusMatcher : public testing::TestWithParam<MatcherParams> {};
 
 INSTANTIATE_TEST_SUITE_P(Matchers, CensusMatcher,
-                         testing::Values(CensusSgmParams{}, AdaptiveWindowParams{}), name_of);
+                         testing::Values(CensusSgmParams{}, AdaptiveWindowParams{},
+                                         windows(WindowSupport::five_windows),
+                                         windows(WindowSupport::nine_windows)),
+                         name_of);
 
 // Of the pixels of the plane that are right within half a pixel, with the right image so many times
 // as bright.
@@ -151,6 +167,35 @@ TEST_P(CensusMatcher, NoiseBetweenCamerasIsNoSurface) {
     pair.right = pair_of(gray).left;
     EXPECT_LT(density(match(pair, GetParam())), 0.002) << levels << " grey values";
   }
+}
+
+// Of blobs of few grey values, independent in both images.
+double density_of_blurred_noise(const MatcherParams& params, unsigned levels, double blur_px,
+                                unsigned seed) {
+  cv::RNG random(seed);
+  RectifiedPair pair;
+  for (GrayImage* const image : {&pair.left, &pair.right}) {
+    image->pixels.create(kSize);
+    random.fill(image->pixels, cv::RNG::UNIFORM, 0, levels);
+    cv::GaussianBlur(image->pixels, image->pixels, {0, 0}, blur_px);
+  }
+  return density(match(pair, params));
+}
+
+TEST_P(CensusMatcher, BlurredNoiseIsHardlyASurface) {
+  constexpr unsigned kSeeds = 6;
+  double sum = 0, largest = 0;
+  for (const unsigned levels : {2U, 3U, 5U, 256U})
+    for (const double blur_px : {0.8, 1.5})
+      for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+        const double found = density_of_blurred_noise(GetParam(), levels, blur_px, seed);
+        sum += found / (8 * kSeeds);
+        largest = std::max(largest, found);
+      }
+  EXPECT_LT(sum, 0.008);
+  EXPECT_LT(largest, 0.06);
+  RecordProperty("mean", std::to_string(sum));
+  RecordProperty("largest", std::to_string(largest));
 }
 
 TEST_P(CensusMatcher, StripesThatRepeatAreNoSurface) {

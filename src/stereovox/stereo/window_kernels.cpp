@@ -11,8 +11,9 @@ const WindowKernels& portable_window_kernels() {
 }
 
 const WindowKernels& fastest_window_kernels() {
-  const WindowKernels* const kernels = avx2_window_kernels();
-  return kernels != nullptr ? *kernels : portable_window_kernels();
+  for (const WindowKernels* const kernels : {avx512_window_kernels(), avx2_window_kernels()})
+    if (kernels != nullptr) return *kernels;
+  return portable_window_kernels();
 }
 
 }  // namespace stereovox

@@ -1,5 +1,6 @@
-// The inner loops of the adaptive windows, compiled for AVX2 and for any machine; all give the same
-// bytes. Candidates are those of census_kernels.h, and so is the rule about plain pointers.
+// The inner loops of the adaptive windows, compiled for AVX2, for AVX-512 and for any machine; all
+// give the same bytes. Candidates are those of census_kernels.h, and so is the rule about plain
+// pointers.
 #pragma once
 
 #include <array>
@@ -48,12 +49,50 @@ struct ChoiceRow {
   const std::uint16_t* area = nullptr;  // pixels of each window
 };
 
+struct CostRow {
+  int width_px = 0;
+  PixelRow left, right;          // candidate i of left pixel x is right pixel x + i
+  std::uint8_t* cost = nullptr;  // memory for width x candidates costs
+};
+
+// Costs summed over squares of 2 half_px + 1 rows and columns, from those of the row above: one row
+// of costs enters the columns, another leaves them. Beyond the image columns are those at its edge.
+struct BoxRow {
+  int width_px = 0, half_px = 0;
+  const std::uint8_t *entering = nullptr, *leaving = nullptr;
+  std::uint16_t* column = nullptr;  // width x candidates: sums over the rows of a square
+  std::uint16_t* box = nullptr;     // the same over whole squares
+};
+
+// The squares besides the one about a pixel: none, those half_px away on its diagonals, or these
+// and those half_px beside, above and below it.
+enum class NeighbourWindows { none, four, eight };
+inline constexpr int kNeighbourhoods = 3;
+constexpr int number_of(NeighbourWindows neighbours) { return 4 * static_cast<int>(neighbours); }
+// Of the neighbours the better half counts. The sums have 16 bits, and one value means nothing.
+inline constexpr int kMaxWindowHalf_px = 10;
+static_assert((1 + number_of(NeighbourWindows::eight) / 2) * (2 * kMaxWindowHalf_px + 1) *
+                  (2 * kMaxWindowHalf_px + 1) * kMaxMatchingCost <
+              (1 << 16) - 1);
+
+// The row whose winners are looked for by squares that support each other.
+struct SupportedRow {
+  int width_px = 0, half_px = 0;
+  // Sums about the pixels half_px above, in, and half_px below this row: width x candidates.
+  std::array<const std::uint16_t*, 3> boxes = {};
+  std::uint8_t* cost = nullptr;  // of this row
+  int area = 0;                  // pixels of all squares that count
+};
+
 // Functions that depend on the number of candidates are listed by candidates / kCandidateStep - 1.
 struct WindowKernels {
   static constexpr int kSizes = CensusKernels::kSizes;
   using Arms = void (*)(const ArmRow& row, std::uint8_t* out);
   using Gather = void (*)(const GatherRow& row);
   using Choose = void (*)(const ChoiceRow& row, const WinnerPointers& out);
+  using Costs = void (*)(const CostRow& row);
+  using SumBoxes = void (*)(const BoxRow& row);
+  using ChooseSupported = void (*)(const SupportedRow& row, const WinnerPointers& out);
 
   CensusKernels::Census census = nullptr;
   Arms arms = nullptr;
@@ -61,10 +100,14 @@ struct WindowKernels {
   // The costs of a winner are means over its window in parts of a bit, kMeanCostSteps. Where a
   // surface leans, its window is right for its middle only: so local costs choose among neighbours.
   std::array<Choose, kSizes> choose = {};
+  std::array<Costs, kSizes> costs = {};
+  std::array<SumBoxes, kSizes> sum_boxes = {};
+  std::array<std::array<ChooseSupported, kSizes>, kNeighbourhoods> choose_supported = {};
 };
 
 const WindowKernels& portable_window_kernels();
-const WindowKernels* avx2_window_kernels();  // nullptr on a machine without AVX2
+const WindowKernels* avx2_window_kernels();    // nullptr on a machine without AVX2
+const WindowKernels* avx512_window_kernels();  // or without AVX-512 BW, VBMI and BITALG
 const WindowKernels& fastest_window_kernels();
 
 }  // namespace stereovox

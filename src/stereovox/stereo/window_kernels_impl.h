@@ -29,14 +29,27 @@ void grow_arms(const ArmRow& row, std::uint8_t* out) {
   }
 }
 
+// The costs of the candidates of pixel x.
+template <class S, int kCandidates>
+[[gnu::always_inline]] inline void compare(const PixelRow& left, const PixelRow& right, int x,
+                                           std::uint8_t* cost) {
+  typename S::V words[kPlanes];
+  for (int p = 0; p < kPlanes; ++p) words[p] = S::spread(left.planes[p][x]);
+  for (int i = 0; i < kCandidates; i += S::kSize)
+    S::store(cost + i, matching_cost<S>(words, right, x + i));
+}
+
+template <class S, int kCandidates>
+void cost_row(const CostRow& row) {
+  for (int x = 0; x < row.width_px; ++x)
+    compare<S, kCandidates>(row.left, row.right, x, row.cost + x * kCandidates);
+}
+
 // The costs of the candidates of pixel x, added to the sums of the pixels before it in the row.
 template <class S, int kCandidates>
 [[gnu::always_inline]] inline void add_costs(const GatherRow& row, int x) {
-  typename S::V words[kPlanes];
   std::uint8_t* const cost = row.cost + x * kCandidates;
-  for (int p = 0; p < kPlanes; ++p) words[p] = S::spread(row.left.planes[p][x]);
-  for (int i = 0; i < kCandidates; i += S::kSize)
-    S::store(cost + i, matching_cost<S>(words, row.right, x + i));
+  compare<S, kCandidates>(row.left, row.right, x, cost);
   const Sum* const before = row.along + x * kCandidates;
   Sum* __restrict const after = row.along + (x + 1) * kCandidates;
   for (int i = 0; i < kCandidates; ++i) after[i] = static_cast<Sum>(before[i] + cost[i]);
@@ -66,6 +79,14 @@ struct ThreeSumsOut {
 };
 constexpr ThreeSumsOut kThreeSumsOut;
 
+struct Places {
+  Sum at[kMaxCandidates] = {};
+  constexpr Places() {
+    for (int i = 0; i < kMaxCandidates; ++i) at[i] = static_cast<Sum>(i);
+  }
+};
+constexpr Places kPlaces;
+
 struct BestSum {
   int candidate;
   Sum sum, second;  // second: of those that are not its neighbours
@@ -77,8 +98,11 @@ template <int kCandidates>
 [[gnu::always_inline]] inline BestSum best_of(const Sum* sums) {
   Sum smallest = kNoSum, first = kNoSum, second = kNoSum;
   for (int i = 0; i < kCandidates; ++i) smallest = smaller(smallest, sums[i]);
-  for (int i = 0; i < kCandidates; ++i)
-    first = smaller(first, sums[i] == smallest ? static_cast<Sum>(i) : kNoSum);
+  // Without a comparison, of which g++ 12 makes no vectors here.
+  for (int i = 0; i < kCandidates; ++i) {
+    const Sum differs = smaller(static_cast<Sum>(sums[i] - smallest), 1);
+    first = smaller(first, static_cast<Sum>(kPlaces.at[i] | static_cast<Sum>(-differs)));
+  }
   const Sum* const out = kThreeSumsOut.sums + kMaxCandidates - first;
   for (int i = 0; i < kCandidates; ++i)
     second = smaller(second, static_cast<Sum>(sums[i] | out[i]));
@@ -90,36 +114,154 @@ constexpr std::uint8_t mean_cost(Sum sum, int area) {
   return static_cast<std::uint8_t>((sum * kMeanCostSteps + area / 2) / area);
 }
 
+// Finds the winners of a row from left to right.
+template <class S, int kCandidates>
+class WinnersAlong {
+ public:
+  // `cost` of the row: width x candidates.
+  WinnersAlong(int width_px, std::uint8_t* cost, const WinnerPointers& out)
+      : costs_(row_of(width_px, cost)), out_(out), local_(costs_, 0) {}
+
+  // The sums of the windows of pixel x, which have `area` pixels. `walled` is no member, so that
+  // the compiler may keep the members in registers.
+  [[gnu::always_inline]] void choose(int x, const Sum* sums, int area,
+                                     WalledCosts<kCandidates>& walled) {
+    const BestSum best = best_of<kCandidates>(sums);
+    out_.candidate[x] = static_cast<std::uint8_t>(best.candidate);
+    out_.cost[x] = mean_cost(best.sum, area);
+    out_.second[x] = mean_cost(best.second, area);
+    if (x > 0) local_.move_to(x, 1);
+    local_.choose(x, walled, out_);
+  }
+
+ private:
+  static SweepRow row_of(int width_px, std::uint8_t* cost) {
+    SweepRow row;
+    row.width_px = width_px;
+    row.cost = cost;
+    return row;
+  }
+
+  const SweepRow costs_;
+  const WinnerPointers out_;
+  LocalSums<S, kCandidates> local_;
+};
+
 template <class S, int kCandidates>
 void choose_row(const ChoiceRow& row, const WinnerPointers& out) {
-  SweepRow costs;
-  costs.width_px = row.width_px;
-  costs.cost = row.cost;
   WalledCosts<kCandidates> walled;
-  LocalSums<S, kCandidates> local(costs, 0);
+  WinnersAlong<S, kCandidates> winners(row.width_px, row.cost, out);
   for (int x = 0; x < row.width_px; ++x) {
     const Sum* const before = row.before[row.arm_up[x]] + x * kCandidates;
     const Sum* const after = row.after[row.arm_down[x]] + x * kCandidates;
     Sum sums[kCandidates];
     for (int i = 0; i < kCandidates; ++i) sums[i] = static_cast<Sum>(after[i] - before[i]);
-    const BestSum best = best_of<kCandidates>(sums);
-    out.candidate[x] = static_cast<std::uint8_t>(best.candidate);
-    out.cost[x] = mean_cost(best.sum, row.area[x]);
-    out.second[x] = mean_cost(best.second, row.area[x]);
-    if (x > 0) local.move_to(x, 1);
-    local.choose(x, walled, out);
+    winners.choose(x, sums, row.area[x], walled);
   }
 }
 
-template <class S>
+template <int kCandidates>
+void sum_boxes(const BoxRow& row) {
+  const std::uint8_t *const entering = row.entering, *const leaving = row.leaving;
+  Sum* __restrict const column = row.column;
+  const int last = row.width_px - 1;
+  for (int i = 0; i < row.width_px * kCandidates; ++i)
+    column[i] = static_cast<Sum>(column[i] + entering[i] - leaving[i]);
+  const auto column_at = [&](int x) {
+    return column + (x < 0 ? 0 : (x > last ? last : x)) * kCandidates;
+  };
+  Sum sum[kCandidates] = {};
+  const auto change = [&](const Sum* added, const Sum* taken) {
+    for (int i = 0; i < kCandidates; ++i) sum[i] = static_cast<Sum>(sum[i] + added[i] - taken[i]);
+  };
+  constexpr Sum kNothing[kCandidates] = {};
+  for (int dx = -row.half_px; dx <= row.half_px; ++dx) change(column_at(dx), kNothing);
+  for (int x = 0; x <= last; ++x) {
+    Sum* __restrict const box = row.box + x * kCandidates;
+    for (int i = 0; i < kCandidates; ++i) box[i] = sum[i];
+    change(column_at(x + row.half_px + 1), column_at(x - row.half_px));
+  }
+}
+
+constexpr Sum larger(Sum a, Sum b) { return a < b ? b : a; }
+constexpr Sum sum_of(Sum a, Sum b) { return static_cast<Sum>(a + b); }
+
+struct FourSums {
+  Sum a, b, c, d;  // from the smallest
+};
+
+[[gnu::always_inline]] inline FourSums sorted(Sum a, Sum b, Sum c, Sum d) {
+  const Sum ab = smaller(a, b), ba = larger(a, b), cd = smaller(c, d), dc = larger(c, d);
+  const Sum one = larger(ab, cd), other = smaller(ba, dc);
+  return {smaller(ab, cd), smaller(one, other), larger(one, other), larger(ba, dc)};
+}
+
+[[gnu::always_inline]] inline Sum best_two(Sum a, Sum b, Sum c, Sum d) {
+  return smaller(smaller(sum_of(a, b), sum_of(c, d)), sum_of(smaller(a, b), smaller(c, d)));
+}
+
+// Of two sorted fours those below the middle are the smaller ones of the pairs that lie as far from
+// opposite ends.
+[[gnu::always_inline]] inline Sum best_four(FourSums p, FourSums q) {
+  return sum_of(sum_of(smaller(p.a, q.d), smaller(p.b, q.c)),
+                sum_of(smaller(p.c, q.b), smaller(p.d, q.a)));
+}
+
+// The better half of the sums of candidate i.
+template <NeighbourWindows kNeighbours>
+[[gnu::always_inline]] inline Sum support(const Sum* const (&at)[8], int i) {
+  if constexpr (kNeighbours == NeighbourWindows::none) return 0;
+  if constexpr (kNeighbours == NeighbourWindows::four)
+    return best_two(at[0][i], at[1][i], at[2][i], at[3][i]);
+  return best_four(sorted(at[0][i], at[1][i], at[2][i], at[3][i]),
+                   sorted(at[4][i], at[5][i], at[6][i], at[7][i]));
+}
+
+template <class S, int kCandidates, NeighbourWindows kNeighbours>
+void choose_supported(const SupportedRow& row, const WinnerPointers& out) {
+  WalledCosts<kCandidates> walled;
+  WinnersAlong<S, kCandidates> winners(row.width_px, row.cost, out);
+  const Sum *const above = row.boxes[0], *const here = row.boxes[1], *const below = row.boxes[2];
+  for (int x = 0; x < row.width_px; ++x) {
+    const int last = row.width_px - 1, middle = x * kCandidates;
+    const int left = (x < row.half_px ? 0 : x - row.half_px) * kCandidates;
+    const int right = (x + row.half_px > last ? last : x + row.half_px) * kCandidates;
+    const Sum* const at[] = {above + left,   above + right,  below + left, below + right,
+                             above + middle, below + middle, here + left,  here + right};
+    Sum sums[kCandidates];
+    for (int i = 0; i < kCandidates; ++i)
+      sums[i] = sum_of(here[middle + i], support<kNeighbours>(at, i));
+    winners.choose(x, sums, row.area, walled);
+  }
+}
+
+template <class Odd, class Even, NeighbourWindows kNeighbours>
+constexpr std::array<WindowKernels::ChooseSupported, WindowKernels::kSizes> supported_choices() {
+  return {choose_supported<Odd, 32, kNeighbours>,  choose_supported<Even, 64, kNeighbours>,
+          choose_supported<Odd, 96, kNeighbours>,  choose_supported<Even, 128, kNeighbours>,
+          choose_supported<Odd, 160, kNeighbours>, choose_supported<Even, 192, kNeighbours>,
+          choose_supported<Odd, 224, kNeighbours>, choose_supported<Even, 256, kNeighbours>};
+}
+
+// Even is for numbers of candidates that are even multiples of kCandidateStep, Odd for the others.
+template <class Odd, class Even = Odd>
 constexpr WindowKernels make_window_kernels() {
   return {
-      .census = census_row<S>,
-      .arms = grow_arms<S>,
-      .gather = {gather_row<S, 32>, gather_row<S, 64>, gather_row<S, 96>, gather_row<S, 128>,
-                 gather_row<S, 160>, gather_row<S, 192>, gather_row<S, 224>, gather_row<S, 256>},
-      .choose = {choose_row<S, 32>, choose_row<S, 64>, choose_row<S, 96>, choose_row<S, 128>,
-                 choose_row<S, 160>, choose_row<S, 192>, choose_row<S, 224>, choose_row<S, 256>}};
+      .census = census_row<Even>,
+      .arms = grow_arms<Even>,
+      .gather = {gather_row<Odd, 32>, gather_row<Even, 64>, gather_row<Odd, 96>,
+                 gather_row<Even, 128>, gather_row<Odd, 160>, gather_row<Even, 192>,
+                 gather_row<Odd, 224>, gather_row<Even, 256>},
+      .choose = {choose_row<Odd, 32>, choose_row<Even, 64>, choose_row<Odd, 96>,
+                 choose_row<Even, 128>, choose_row<Odd, 160>, choose_row<Even, 192>,
+                 choose_row<Odd, 224>, choose_row<Even, 256>},
+      .costs = {cost_row<Odd, 32>, cost_row<Even, 64>, cost_row<Odd, 96>, cost_row<Even, 128>,
+                cost_row<Odd, 160>, cost_row<Even, 192>, cost_row<Odd, 224>, cost_row<Even, 256>},
+      .sum_boxes = {sum_boxes<32>, sum_boxes<64>, sum_boxes<96>, sum_boxes<128>, sum_boxes<160>,
+                    sum_boxes<192>, sum_boxes<224>, sum_boxes<256>},
+      .choose_supported = {supported_choices<Odd, Even, NeighbourWindows::none>(),
+                           supported_choices<Odd, Even, NeighbourWindows::four>(),
+                           supported_choices<Odd, Even, NeighbourWindows::eight>()}};
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <numeric>
 
+#include "stereovox/stereo/multiple_windows.h"
 #include "stereovox/stereo/window_sweep.h"
 
 namespace stereovox {
@@ -30,13 +32,24 @@ std::uint8_t arm(const cv::Mat1b& calm, int x, int y, int dx, int dy, const ArmP
 }
 
 using Costs = std::vector<int>;  // of the candidates of one pixel
+using CostImage = std::vector<std::vector<Costs>>;
+
+CostImage costs_of(const RectifiedPair& pair, int min_disparity_px, int candidates) {
+  const cv::Size size = pair.left.pixels.size();
+  CostImage costs(size.height, std::vector<Costs>(size.width, Costs(candidates)));
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      for (int c = 0; c < candidates; ++c)
+        costs[y][x][c] = matching_cost_reference(pair, x, y, min_disparity_px + candidates - 1 - c);
+  return costs;
+}
 
 struct Window {
   Costs sums;
   int area = 0;
 };
 
-Window window_at(const std::vector<std::vector<Costs>>& costs, const Arms& arms, int x, int y) {
+Window window_at(const CostImage& costs, const Arms& arms, int x, int y) {
   Window window{Costs(costs[0][0].size()), 0};
   for (int v = y - arms.up(y, x); v <= y + arms.down(y, x); ++v)
     for (int u = x - arms.left(v, x); u <= x + arms.right(v, x); ++u) {
@@ -61,6 +74,51 @@ void write_winner(const Window& window, int x, WinnerRow& out) {
   out.second[x] = mean(second);
 }
 
+// The sum of one candidate's costs over the square about the pixel nearest to (x, y).
+int box_at(const CostImage& costs, int half_px, int x, int y, int candidate) {
+  const int height = static_cast<int>(costs.size()), width = static_cast<int>(costs[0].size());
+  const auto inside = [](int i, int size) { return std::clamp(i, 0, size - 1); };
+  x = inside(x, width);
+  y = inside(y, height);
+  int sum = 0;
+  for (int dy = -half_px; dy <= half_px; ++dy)
+    for (int dx = -half_px; dx <= half_px; ++dx)
+      sum += costs[inside(y + dy, height)][inside(x + dx, width)][candidate];
+  return sum;
+}
+
+Window supported_at(const CostImage& costs, const MultipleWindows& windows, int x, int y) {
+  const int reach = windows.half_px, neighbours = number_of(windows.neighbours);
+  const std::array<cv::Point, 8> directions = {
+      {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}, {0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
+  Window window{Costs(costs[0][0].size()), windows.area()};
+  for (int c = 0; c < static_cast<int>(window.sums.size()); ++c) {
+    std::vector<int> beside;
+    for (int n = 0; n < neighbours; ++n)
+      beside.push_back(
+          box_at(costs, reach, x + reach * directions[n].x, y + reach * directions[n].y, c));
+    std::ranges::sort(beside);
+    window.sums[c] = std::accumulate(beside.begin(), beside.begin() + neighbours / 2,
+                                     box_at(costs, reach, x, y, c));
+  }
+  return window;
+}
+
+// Window of a pixel: window_of(x, y).
+template <class WindowOf>
+std::vector<WinnerRow> winners_of(const CostImage& costs, int first_row, int end_row,
+                                  const WindowOf& window_of) {
+  const int width = static_cast<int>(costs[0].size());
+  const int candidates = static_cast<int>(costs[0][0].size());
+  std::vector<WinnerRow> rows;
+  for (int y = first_row; y < end_row; ++y) {
+    rows.emplace_back(width);
+    for (int x = 0; x < width; ++x) write_winner(window_of(x, y), x, rows.back());
+    choose_locally_reference([&](int x, int c) { return costs[y][x][c]; }, candidates, rows.back());
+  }
+  return rows;
+}
+
 }  // namespace
 
 Arms arms_reference(const cv::Mat1b& image, const ArmParams& params) {
@@ -83,20 +141,18 @@ Arms arms_reference(const cv::Mat1b& image, const ArmParams& params) {
 std::vector<WinnerRow> windows_reference(const RectifiedPair& pair, const Arms& arms,
                                          int min_disparity_px, int candidates, int first_row,
                                          int end_row) {
-  const cv::Size size = pair.left.pixels.size();
-  std::vector<std::vector<Costs>> costs(size.height,
-                                        std::vector<Costs>(size.width, Costs(candidates)));
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x)
-      for (int c = 0; c < candidates; ++c)
-        costs[y][x][c] = matching_cost_reference(pair, x, y, min_disparity_px + candidates - 1 - c);
-  std::vector<WinnerRow> rows;
-  for (int y = first_row; y < end_row; ++y) {
-    rows.emplace_back(size.width);
-    for (int x = 0; x < size.width; ++x) write_winner(window_at(costs, arms, x, y), x, rows.back());
-    choose_locally_reference([&](int x, int c) { return costs[y][x][c]; }, candidates, rows.back());
-  }
-  return rows;
+  const CostImage costs = costs_of(pair, min_disparity_px, candidates);
+  return winners_of(costs, first_row, end_row,
+                    [&](int x, int y) { return window_at(costs, arms, x, y); });
+}
+
+std::vector<WinnerRow> multiple_windows_reference(const RectifiedPair& pair,
+                                                  const MultipleWindows& windows,
+                                                  int min_disparity_px, int candidates,
+                                                  int first_row, int end_row) {
+  const CostImage costs = costs_of(pair, min_disparity_px, candidates);
+  return winners_of(costs, first_row, end_row,
+                    [&](int x, int y) { return supported_at(costs, windows, x, y); });
 }
 
 }  // namespace stereovox

@@ -61,7 +61,8 @@ TEST_P(WindowSweepAndReference, FindTheSameArmsAndWinnersOnEveryMachine) {
     const Arms arms = arms_reference(pair.left.pixels, params);
     const auto expected =
         windows_reference(pair, arms, c.min_disparity_px, c.candidates, c.first_row, c.size.height);
-    for (const WindowKernels* kernels : {&portable_window_kernels(), avx2_window_kernels()}) {
+    for (const WindowKernels* kernels :
+         {&portable_window_kernels(), avx2_window_kernels(), avx512_window_kernels()}) {
       if (kernels == nullptr) continue;  // not on this machine
       EXPECT_TRUE(same(arms_of(pair.left.pixels, params, *kernels, 2), arms)) << levels;
       EXPECT_TRUE(swept(pair, arms, c, *kernels) == expected) << levels;
