@@ -40,9 +40,15 @@ OdometryResult Odometry::track(const RectifiedPair& pair, const DisparityImage& 
 }
 
 OdometryResult Odometry::place(LeveledFrame& frame) {
-  const Comparison comparison = comparer_.compare(frame, local_keyframes(reference_),
-                                                  {predicted_pose(frame.stamp_ns), last_});
+  const std::optional<SE3> T_segment_predicted = predicted_pose(frame.stamp_ns);
+  Comparison comparison =
+      comparer_.compare(frame, local_keyframes(reference_), {T_segment_predicted, last_});
   if (!comparison.is_trusted()) return search(frame, comparison);
+  // Few corners may know the place less well than all pixels do.
+  if (comparison.estimate.inliers < params_.quality.plenty_inliers) {
+    const auto near = find_near_last_pose(frame, T_segment_predicted);
+    if (near && sigma_m(near->estimate) < sigma_m(comparison.estimate)) comparison = *near;
+  }
   // The camera may be back where an earlier segment knew its way.
   if (const auto earlier = recognise(frame, true, 1))
     return accept_in_earlier_segment(frame, comparison, *earlier);
