@@ -72,6 +72,7 @@ const std::vector<Settings> kFurtherChoices = {
     {{"observation.type", "min_ramp"}, {"union.type", "rank"}, {"union.majority", "0.5"}},
     {{"observation.type", "min_ramp"}, {"union.type", "rank"}, {"max_sigma_half_voxels", "30"}},
     {{"update.type", "dempster_shafer"}, {"update.conflict", "yager"}},
+    {{"smoothing.radius_px", "2"}, {"smoothing.gate_sigmas", "3"}},
 };
 
 std::string text_of(const Settings& settings) {
