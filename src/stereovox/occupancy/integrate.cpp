@@ -231,7 +231,8 @@ FrameUpdate summary_of(const FrameObservation& observation) {
 FrameUpdate integrate(const DisparityImage& disparity, const RectifiedCamera& camera,
                       const SE3& T_world_camera, std::int64_t stamp_ns,
                       const OccupancyParams& params, int threads, VoxelMap& map) {
-  const DisparityImage smooth = smoothed(disparity, params.smoothing, threads);
+  const std::vector<int> rows = rows_read(sampling_steps(params, camera), disparity.height());
+  const DisparityImage smooth = smoothed(disparity, params.smoothing, rows, threads);
   const FrameView frame = view_frame(smooth, camera, T_world_camera, stamp_ns, params, map);
   const FrameObservation observation = observe_frame(frame, map, threads);
   const FrameChange change{.frame = frame,

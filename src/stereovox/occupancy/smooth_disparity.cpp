@@ -91,16 +91,17 @@ void smooth_row(const DisparityImage& image, const cv::Mat1f& wide, const Smooth
 
 }  // namespace
 
-DisparityImage smoothed(const DisparityImage& image, const SmoothingParams& params, int threads,
-                        VectorTarget target) {
+DisparityImage smoothed(const DisparityImage& image, const SmoothingParams& params,
+                        std::span<const int> rows, int threads, VectorTarget target) {
   if (params.radius_px == 0) return image;
   if (image.sigma_px.size() != image.disparity_px.size())
     throw std::logic_error("smoothed: disparities and standard deviations differ in size");
   const cv::Mat1f wide = padded(image, params.radius_px);
   DisparityImage out = image;
   out.disparity_px = image.disparity_px.clone();
-  parallel_for(0, image.height(), threads,
-               [&](int v) { smooth_row(image, wide, params, v, target, out.disparity_px); });
+  parallel_for(0, static_cast<int>(rows.size()), threads, [&](int i) {
+    smooth_row(image, wide, params, rows[static_cast<std::size_t>(i)], target, out.disparity_px);
+  });
   return out;
 }
 

@@ -9,6 +9,8 @@
 // neighbouring pixels are alike, so that the mean of them need not be surer.
 #pragma once
 
+#include <span>
+
 #include "stereovox/core/image.h"
 #include "stereovox/core/parameters.h"
 #include "stereovox/occupancy/vector_target.h"
@@ -27,8 +29,10 @@ struct SmoothingParams {
   }
 };
 
-// Throws std::logic_error when disparities and standard deviations differ in size.
-DisparityImage smoothed(const DisparityImage& image, const SmoothingParams& params, int threads,
+// Of these rows; the others stay as they are. Throws std::logic_error when disparities and standard
+// deviations differ in size.
+DisparityImage smoothed(const DisparityImage& image, const SmoothingParams& params,
+                        std::span<const int> rows, int threads,
                         VectorTarget target = best_target());
 
 }  // namespace stereovox
