@@ -25,7 +25,7 @@ void add_block(const MapQueries& queries, const VoxelBlock& block, openvdb::Floa
 
 openvdb::FloatGrid::Ptr grid_of(const VoxelMap& map, const QueryParams& params) {
   const double size_m = map.voxel_size_m();
-  const openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(kUnknown);
+  openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(kUnknown);
   grid->setName("occupancy");
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   const auto transform = openvdb::math::Transform::createLinearTransform(size_m);
