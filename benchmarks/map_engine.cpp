@@ -1,7 +1,8 @@
-// The map engine beside OctoMap: the same frames of the same scene through both, in one run.
+// The map engine beside OctoMap and, where it is installed, OpenVDB: the same frames of the same
+// scene through all of them, in one run.
 //
 //   map_engine [--frames N] [--step N] [--voxel M] [--pixels N] [--threads N] [--depth clean|noisy]
-//              [--only NAME] [--no-accuracy] [--set occupancy parameter=value]...
+//              [--only NAME] [--no-accuracy] [--seed N] [--set occupancy parameter=value]...
 //
 // Without options: 5 and 10 cm, all pixels and every fourth, one and two threads, clean and noisy
 // depth. CPU time counts all threads; the machine may do other work, so compare CPU times.
@@ -10,20 +11,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <functional>
 
-#include "map_engine_world.h"
+#include "map_engine_openvdb.h"
 #include "stereovox/core/grid_geometry.h"
 #include "stereovox/occupancy/frame_view.h"
 #include "stereovox/occupancy/integrate.h"
 #include "stereovox/occupancy/map_queries.h"
-#include "timing.h"
 
 namespace stereovox::bench {
 namespace {
-
-enum class State { unknown, free, occupied };
-using StateAt = std::function<State(const Eigen::Vector3i&)>;
 
 struct Options {
   int frames = 20, step = 10;  // of the drive, every `step`-th
@@ -32,136 +28,27 @@ struct Options {
   std::vector<std::string> depths = {"clean", "noisy"};
   std::vector<std::string> only;
   std::vector<std::string> settings;
-  bool has_truth = true;  // without, no accuracy is measured
-};
-
-struct Case {
-  double voxel_size_m = 0.05;
-  int pixel_step = 1, threads = 1;
-  Depth depth = Depth::clean;
-};
-
-// The compiler must not drop the loop that counted this.
-void keep(std::int64_t count) {
-  [[maybe_unused]] static volatile std::int64_t kept = 0;
-  kept = count;
-}
-
-struct Accuracy {
-  double free_recall = 0, occupied_recall = 0, near_recall = 0, thin_recall = 0, precision = 0;
-};
-
-bool is_occupied_near(const StateAt& state, const Eigen::Vector3i& voxel) {
-  Eigen::Vector3i step;
-  for (step.x() = -1; step.x() <= 1; ++step.x())
-    for (step.y() = -1; step.y() <= 1; ++step.y())
-      for (step.z() = -1; step.z() <= 1; ++step.z())
-        if (state(voxel + step) == State::occupied) return true;
-  return false;
-}
-
-struct Share {
-  std::int64_t of = 0, all = 0;
-  void add(bool counts) {
-    of += counts ? 1 : 0;
-    ++all;
-  }
-  double value() const { return all == 0 ? 0.0 : double(of) / double(all); }
-};
-
-// Free recall: of the voxels without a solid that a ray crossed. Occupied recall: of the voxels
-// that hold the end of a ray; `near` counts an occupied voxel among the 26 around. Precision: of
-// the occupied voxels those that, grown by half a voxel, touch a solid.
-Accuracy accuracy_of(const Truth& truth, const StateAt& state) {
-  Share free, occupied, near, thin, precise;
-  Eigen::Vector3i place;
-  for (place.z() = 0; place.z() < truth.size.z(); ++place.z())
-    for (place.y() = 0; place.y() < truth.size.y(); ++place.y())
-      for (place.x() = 0; place.x() < truth.size.x(); ++place.x()) {
-        const Eigen::Vector3i voxel = truth.low + place;
-        const std::uint8_t what = truth.at(voxel);
-        const State found = state(voxel);
-        if (what & Truth::kHit) {
-          occupied.add(found == State::occupied);
-          near.add(is_occupied_near(state, voxel));
-          if (what & Truth::kThin) thin.add(found == State::occupied);
-        } else if ((what & Truth::kCrossed) && !(what & Truth::kSolid)) {
-          free.add(found == State::free);
-        }
-        if (found == State::occupied) precise.add((what & Truth::kNearSolid) != 0);
-      }
-  return {free.value(), occupied.value(), near.value(), thin.value(), precise.value()};
-}
-
-struct Result {
-  std::string name;
-  Times times;
-  double bytes_per_voxel = 0, look_up_ns = 0, ray_us = 0;
-  Accuracy accuracy;
+  std::uint64_t seed = 0;  // of the noise
+  bool has_truth = true;   // without, no accuracy is measured
 };
 
 void print(const Case& c, const Result& r, double octomap_ms) {
   const double cpu_ms = median(r.times.cpu_ms);
   fmt::print(
       "{:>4.0f} {:>5} {:>6} {:>3} {:<18} {:>8.1f} {:>8.1f} {:>8.1f} {:>7.1f} {:>6.1f} {:>6.0f} "
-      "{:>6.2f}  {:.3f} {:.3f} {:.3f} {:.3f} {:.3f}\n",
+      "{:>6.0f} {:>6.2f}  {:.3f} {:.3f} {:.3f} {:.3f} {:.3f}\n",
       c.voxel_size_m * 1e2, c.pixel_step, c.depth == Depth::clean ? "clean" : "noisy", c.threads,
       r.name, cpu_ms, quantile(r.times.cpu_ms, 0.95), median(r.times.wall_ms), octomap_ms / cpu_ms,
-      r.bytes_per_voxel, r.look_up_ns, r.ray_us, r.accuracy.free_recall, r.accuracy.occupied_recall,
-      r.accuracy.near_recall, r.accuracy.thin_recall, r.accuracy.precision);
+      r.bytes_per_voxel, r.look_up_ns, r.batch_ns, r.ray_us, r.accuracy.free_recall,
+      r.accuracy.occupied_recall, r.accuracy.near_recall, r.accuracy.thin_recall,
+      r.accuracy.precision);
   std::fflush(stdout);
 }
 
 void print_header() {
-  fmt::print("{:>4} {:>5} {:>6} {:>3} {:<18} {:>8} {:>8} {:>8} {:>7} {:>6} {:>6} {:>6}  {}\n", "cm",
-             "px", "depth", "thr", "engine", "cpu ms", "p95", "wall ms", "OctoMap", "B/vox", "ns",
-             "ray us", "free  occ   near  thin  precision");
-}
-
-// A linear congruential generator is enough to scatter queries.
-std::vector<Eigen::Vector3d> random_places(int count) {
-  std::uint64_t state = 12345;
-  const auto next = [&] {
-    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<double>(state >> 11) * 0x1p-53;
-  };
-  std::vector<Eigen::Vector3d> places;
-  for (int i = 0; i < count; ++i) places.emplace_back(16.0 * next(), 12.0 * next(), 2.8 * next());
-  return places;
-}
-
-template <class LookUp>
-double look_up_ns(LookUp look_up) {
-  constexpr int kQueries = 1'000'000;
-  constexpr double kNsPerMs = 1e6;
-  const std::vector<Eigen::Vector3d> places = random_places(kQueries);
-  std::int64_t occupied = 0;
-  Times times;
-  for (int round = 0; round < 3; ++round)
-    time(times, [&] {
-      for (const Eigen::Vector3d& p : places) occupied += look_up(p) == State::occupied ? 1 : 0;
-    });
-  keep(occupied);
-  return median(times.cpu_ms) * kNsPerMs / kQueries;
-}
-
-// Rays into all directions from where the camera was, up to kMaxRange_m.
-template <class Cast>
-double ray_us(const std::vector<Frame>& frames, Cast cast) {
-  constexpr int kRays = 20'000;
-  constexpr double kUsPerMs = 1e3;
-  const std::vector<Eigen::Vector3d> targets = random_places(kRays);
-  std::int64_t hits = 0;
-  Times times;
-  for (int round = 0; round < 3; ++round)
-    time(times, [&] {
-      for (std::size_t i = 0; i < targets.size(); ++i) {
-        const Eigen::Vector3d& from = frames[i % frames.size()].T_world_camera.translation;
-        hits += cast(from, Eigen::Vector3d((targets[i] - from).normalized())) ? 1 : 0;
-      }
-    });
-  keep(hits);
-  return median(times.cpu_ms) * kUsPerMs / kRays;
+  fmt::print("{:>4} {:>5} {:>6} {:>3} {:<18} {:>8} {:>8} {:>8} {:>7} {:>6} {:>6} {:>6} {:>6}  {}\n",
+             "cm", "px", "depth", "thr", "engine", "cpu ms", "p95", "wall ms", "OctoMap", "B/vox",
+             "ns", "batch", "ray us", "free  occ   near  thin  precision");
 }
 
 octomap::Pointcloud points_of(const Frame& frame, const Case& c) {
@@ -225,21 +112,17 @@ Result run_ours(const std::string& name, OccupancyParams params, const Case& c,
       integrate(frame.seen(c.depth), camera(), frame.T_world_camera, frame.number * kFrame_ns,
                 params, c.threads, map);
     });
-  const auto state_of = [](const Voxel& voxel) {
-    if (!is_known(voxel)) return State::unknown;
-    return voxel.state > 0.5F ? State::occupied : State::free;
-  };
-  result.accuracy =
-      accuracy_of(truth, [&](const Eigen::Vector3i& voxel) { return state_of(map.at(voxel)); });
+  const MapQueries queries(map);
+  result.accuracy = accuracy_of(
+      truth, [&](const Eigen::Vector3i& voxel) { return queries.state_of(map.packed_at(voxel)); });
   result.bytes_per_voxel =
       static_cast<double>(map.memory_bytes()) / static_cast<double>(map.known_voxel_count());
-  const MapQueries queries(map);
   result.ray_us = ray_us(frames, [&](const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
     return queries.cast_ray(from, way, kMaxRange_m).has_value();
   });
-  result.look_up_ns = look_up_ns([&](const Eigen::Vector3d& p) {
-    return state_of(map.at(voxel_index_of(c.voxel_size_m, p)));
-  });
+  result.look_up_ns = look_up_ns([&](const Eigen::Vector3d& p) { return queries.state_at(p); });
+  result.batch_ns =
+      batch_ns([&](std::span<const Eigen::Vector3d> places) { return queries.states_at(places); });
   return result;
 }
 
@@ -289,6 +172,8 @@ void run_case(const Options& options, const Case& c, const std::vector<Frame>& f
     octomap_ms = median(octomap.times.cpu_ms);
     print(c, octomap, octomap_ms);
   }
+  if (has_openvdb_peer() && is_wanted("OpenVDB"))
+    print(c, run_openvdb(c, frames, truth), octomap_ms);
   for (const auto& [name, settings] : engines()) {
     if (!is_wanted(name)) continue;
     OccupancyParams params;
@@ -310,6 +195,7 @@ Options parse(int argc, char** argv) {
   app.add_option("--depth", options.depths);
   app.add_option("--only", options.only);
   app.add_option("--set", options.settings);
+  app.add_option("--seed", options.seed);
   app.add_flag("!--no-accuracy", options.has_truth);
   try {
     app.parse(argc, argv);
@@ -322,7 +208,8 @@ Options parse(int argc, char** argv) {
 void run(const Options& options) {
   const std::vector<Box> boxes = office();
   std::vector<Frame> frames;
-  for (int i = 0; i < options.frames; ++i) frames.push_back(see_office(boxes, i * options.step));
+  for (int i = 0; i < options.frames; ++i)
+    frames.push_back(see_office(boxes, i * options.step, options.seed));
   print_header();
   for (const double voxel_m : options.voxels_m) {
     const Truth truth = truth_of(boxes, options.has_truth ? frames : std::vector<Frame>{}, voxel_m);

@@ -91,7 +91,8 @@ double normal_number(std::uint64_t key) {  // Box and Muller
          std::cos(2.0 * std::numbers::pi * uniform(mixed(2 * key + 1)));
 }
 
-void see_row(const std::vector<Box>& boxes, int v, Frame& frame) {
+void see_row(const std::vector<Box>& boxes, int v, std::uint64_t seed, Frame& frame) {
+  constexpr int kSeedBit = 40;  // above all pixels of all frames
   const PinholeCamera& c = camera().pinhole;
   const Eigen::Matrix3d R = frame.T_world_camera.rotation.toRotationMatrix();
   for (int u = 0; u < c.width; ++u) {
@@ -101,7 +102,8 @@ void see_row(const std::vector<Box>& boxes, int v, Frame& frame) {
     if (depth_m * length > kMaxRange_m) continue;
     const auto disparity_px = static_cast<float>(camera().disparity_px(depth_m));
     frame.clean.disparity_px(v, u) = disparity_px;
-    const auto key = static_cast<std::uint64_t>((frame.number * c.height + v) * c.width + u);
+    const auto pixel = static_cast<std::uint64_t>((frame.number * c.height + v) * c.width + u);
+    const std::uint64_t key = (seed << kSeedBit) + pixel;
     const float noisy_px = disparity_px + kNoise_px * static_cast<float>(normal_number(key));
     if (noisy_px > 0.0F && camera().depth_m(double(noisy_px)) * length <= kMaxRange_m)
       frame.noisy.disparity_px(v, u) = noisy_px;
@@ -204,14 +206,14 @@ SE3 pose_at(int frame) {
           start_m + kSpeed_mps * t_s * way};
 }
 
-Frame see_office(const std::vector<Box>& boxes, int number) {
+Frame see_office(const std::vector<Box>& boxes, int number, std::uint64_t seed) {
   const PinholeCamera& c = camera().pinhole;
   const auto image = [&](float sigma_px) {
     return DisparityImage{.disparity_px = cv::Mat1f(c.height, c.width, 0.0F),
                           .sigma_px = cv::Mat1f(c.height, c.width, sigma_px)};
   };
   Frame frame{number, pose_at(number), image(0.0F), image(kNoise_px)};
-  parallel_for(0, c.height, kThreads, [&](int v) { see_row(boxes, v, frame); });
+  parallel_for(0, c.height, kThreads, [&](int v) { see_row(boxes, v, seed, frame); });
   return frame;
 }
 

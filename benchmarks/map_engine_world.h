@@ -1,6 +1,6 @@
 // The scene of the map engine's benchmark: an office of axis-aligned boxes, seen on a drive by a
 // stereo camera without error or with the noise of a matcher, and what the frames show of it,
-// exactly. Nothing random but the noise, which is a function of frame and pixel.
+// exactly. Nothing random but the noise, which is a function of seed, frame and pixel.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,7 +42,8 @@ struct Frame {
 
 inline constexpr double kMaxRange_m = 8.0;
 
-Frame see_office(const std::vector<Box>& boxes, int number);
+// `seed` chooses the noise.
+Frame see_office(const std::vector<Box>& boxes, int number, std::uint64_t seed = 0);
 
 // A lattice over the office and what the frames show of it without noise.
 struct Truth {

@@ -7,6 +7,7 @@
 
 #include "program.h"
 #include "stereovox/core/grid_geometry.h"
+#include "stereovox/occupancy/export_openvdb.h"
 #include "stereovox/occupancy/voxel_map_file.h"
 
 namespace stereovox {
@@ -99,6 +100,17 @@ TEST_F(Export, PointCloudsHoldTheOccupiedVoxels) {
   EXPECT_THAT(text_of(exported("map.ply")),
               HasSubstr("element vertex " + std::to_string(occupied) + "\n"));
   EXPECT_THAT(text_of(exported("map.pcd")), HasSubstr("POINTS " + std::to_string(occupied) + "\n"));
+}
+
+TEST_F(Export, AGridOfOpenvdbIsWrittenOrRefusedInOneLine) {
+  if (has_openvdb()) {
+    // The number that OpenVDB's files begin with.
+    EXPECT_EQ(text_of(exported("map.vdb")).substr(0, 4), " BDV");
+    return;
+  }
+  const ProgramResult result = run_program("export none.svx -o map.vdb");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.output, HasSubstr("map.vdb: this build has no OpenVDB"));
 }
 
 TEST_F(Export, AnUnknownFormIsRefusedBeforeAnyWork) {

@@ -92,6 +92,14 @@ SamplingSteps sampling_steps(const OccupancyParams& params, const RectifiedCamer
   return {params.pixel_step > 0 ? params.pixel_step : auto_surface_px, ray_px};
 }
 
+std::vector<int> rows_read(const SamplingSteps& steps, int height) {
+  const auto is_sampled = [](int row, int step) { return row % step == first_sample(step); };
+  std::vector<int> rows;
+  for (int row = 0; row < height; ++row)
+    if (is_sampled(row, steps.surface_px) || is_sampled(row, steps.ray_px)) rows.push_back(row);
+  return rows;
+}
+
 FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& camera,
                      const SE3& T_world_camera, std::int64_t stamp_ns,
                      const OccupancyParams& params, VoxelMap& map) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "stereovox/core/camera.h"
 #include "stereovox/core/grid_geometry.h"
@@ -25,6 +26,9 @@ struct SamplingSteps {
 // farthest distance that they clear, and surfaces read twice as densely, but not so sparsely that
 // thin things are missed.
 SamplingSteps sampling_steps(const OccupancyParams& params, const RectifiedCamera& camera);
+
+// The rows of an image that are read with these steps.
+std::vector<int> rows_read(const SamplingSteps& steps, int height);
 
 // Refers to what it was made from.
 struct FrameView {

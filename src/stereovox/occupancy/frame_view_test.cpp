@@ -35,5 +35,9 @@ TEST(SamplingSteps, GivenStepsAreKept) {
   EXPECT_EQ(steps.ray_px, 9);
 }
 
+TEST(SamplingSteps, RowsOfSurfacesAndOfRaysAreRead) {
+  EXPECT_EQ(rows_read({.surface_px = 2, .ray_px = 3}, 8), (std::vector<int>{1, 3, 4, 5, 7}));
+}
+
 }  // namespace
 }  // namespace stereovox

@@ -212,14 +212,17 @@ void sort_canonically(std::vector<Eigen::Vector3i>& voxels) {
 FrameUpdate summary_of(const FrameObservation& observation) {
   FrameUpdate update;
   update.points_used = observation.points_used;
-  int observed = 0;
+  std::size_t observed = 0, hit = 0;
   for (const BlockObservation& block : observation.blocks) {
-    for (const std::uint64_t word : block.observed.words) observed += std::popcount(word);
-    for_each_in(block.hit, [&](int i) { update.hits.push_back(voxel_at(block.index, i)); });
+    observed += block.observed.count();
+    hit += block.hit.count();
   }
+  update.hits.reserve(hit);
+  for (const BlockObservation& block : observation.blocks)
+    for_each_in(block.hit, [&](int i) { update.hits.push_back(voxel_at(block.index, i)); });
   sort_canonically(update.hits);
   update.hit_voxels = static_cast<int>(update.hits.size());
-  update.free_voxels = observed - update.hit_voxels;
+  update.free_voxels = static_cast<int>(observed) - update.hit_voxels;
   return update;
 }
 
@@ -228,7 +231,9 @@ FrameUpdate summary_of(const FrameObservation& observation) {
 FrameUpdate integrate(const DisparityImage& disparity, const RectifiedCamera& camera,
                       const SE3& T_world_camera, std::int64_t stamp_ns,
                       const OccupancyParams& params, int threads, VoxelMap& map) {
-  const FrameView frame = view_frame(disparity, camera, T_world_camera, stamp_ns, params, map);
+  const std::vector<int> rows = rows_read(sampling_steps(params, camera), disparity.height());
+  const DisparityImage smooth = smoothed(disparity, params.smoothing, rows, threads);
+  const FrameView frame = view_frame(smooth, camera, T_world_camera, stamp_ns, params, map);
   const FrameObservation observation = observe_frame(frame, map, threads);
   const FrameChange change{.frame = frame,
                            .observation = observation,

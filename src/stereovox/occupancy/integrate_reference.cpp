@@ -1,5 +1,6 @@
 #include "stereovox/occupancy/integrate_reference.h"
 
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -205,12 +206,51 @@ void update_map(const VisibilityRule& rule, const FrameView& frame,
   }
 }
 
+// The mean of one pixel and of the pairs around it.
+float smoothed_pixel(const DisparityImage& image, const SmoothingParams& params, int v, int u) {
+  const auto at = [&](int row, int column) {
+    const bool is_inside =
+        row >= 0 && column >= 0 && row < image.height() && column < image.width();
+    return is_inside ? image.disparity_px(row, column) : 0.0F;
+  };
+  const float middle_px = image.disparity_px(v, u);
+  const float gate_px = static_cast<float>(params.gate_sigmas) * image.sigma_px(v, u);
+  const auto counts = [&](float disparity_px) {
+    return disparity_px > 0.0F && std::isfinite(disparity_px) &&
+           disparity_px >= middle_px - gate_px && disparity_px <= middle_px + gate_px;
+  };
+  float sum_px = middle_px;
+  int count = 1;
+  for (int down = 0; down <= params.radius_px; ++down)
+    for (int right = -params.radius_px; right <= params.radius_px; ++right) {
+      if (down == 0 && right <= 0) continue;
+      const float before_px = at(v - down, u - right), after_px = at(v + down, u + right);
+      if (!counts(before_px) || !counts(after_px)) continue;
+      sum_px += before_px + after_px;
+      count += 2;
+    }
+  return count == 1 ? middle_px : sum_px / static_cast<float>(count);
+}
+
 }  // namespace
+
+DisparityImage smoothed_reference(const DisparityImage& image, const SmoothingParams& params) {
+  DisparityImage out = image;
+  out.disparity_px = image.disparity_px.clone();
+  for (int v = 0; v < image.height(); ++v)
+    for (int u = 0; u < image.width(); ++u) {
+      const float disparity_px = image.disparity_px(v, u);
+      if (disparity_px > 0.0F && std::isfinite(disparity_px))
+        out.disparity_px(v, u) = smoothed_pixel(image, params, v, u);
+    }
+  return out;
+}
 
 FrameUpdate integrate_reference(const DisparityImage& disparity, const RectifiedCamera& camera,
                                 const SE3& T_world_camera, std::int64_t stamp_ns,
                                 const OccupancyParams& params, int /*threads*/, VoxelMap& map) {
-  const FrameView frame = view_frame(disparity, camera, T_world_camera, stamp_ns, params, map);
+  const DisparityImage smooth = smoothed_reference(disparity, params.smoothing);
+  const FrameView frame = view_frame(smooth, camera, T_world_camera, stamp_ns, params, map);
   const std::vector<PointMeasurement> points = surface_points(frame);
 
   PerVoxel<float> observations;

@@ -11,4 +11,7 @@ FrameUpdate integrate_reference(const DisparityImage& disparity, const Rectified
                                 const SE3& T_world_camera, std::int64_t stamp_ns,
                                 const OccupancyParams& params, int threads, VoxelMap& map);
 
+// As smoothed(), pixel by pixel.
+DisparityImage smoothed_reference(const DisparityImage& image, const SmoothingParams& params);
+
 }  // namespace stereovox

@@ -72,6 +72,8 @@ const std::vector<Settings> kFurtherChoices = {
     {{"observation.type", "min_ramp"}, {"union.type", "rank"}, {"union.majority", "0.5"}},
     {{"observation.type", "min_ramp"}, {"union.type", "rank"}, {"max_sigma_half_voxels", "30"}},
     {{"update.type", "dempster_shafer"}, {"update.conflict", "yager"}},
+    {{"smoothing.radius_px", "2"}, {"smoothing.gate_sigmas", "3"}},
+    {{"smoothing.radius_px", "1"}, {"pixel_step", "2"}, {"ray_step_px", "3"}},
 };
 
 std::string text_of(const Settings& settings) {

@@ -1,6 +1,7 @@
 #include "stereovox/occupancy/map_queries.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -16,13 +17,13 @@ class NearbyVoxels {
  public:
   explicit NearbyVoxels(const VoxelMap& map) : map_(map) {}
 
-  PackedVoxel at(const Eigen::Vector3i& voxel) {
+  const PackedVoxel& at(const Eigen::Vector3i& voxel) {
     const Eigen::Vector3i place = block_of(voxel);
     if (place.x() != place_.x() || place.y() != place_.y() || place.z() != place_.z()) {
       place_ = place;
       block_ = map_.find_block(place);
     }
-    if (block_ == nullptr) return {};
+    if (block_ == nullptr) return kUnknownVoxel;
     return block_->voxels.packed(static_cast<std::size_t>(position_in_block(voxel)));
   }
 
@@ -33,37 +34,61 @@ class NearbyVoxels {
   const VoxelBlock* block_ = nullptr;
 };
 
-// A ray from voxel to voxel (Amanatides and Woo 1987), in voxels. Where it crosses a face follows
-// from the face, not from the crossing before, so nothing adds up.
-class VoxelWalk {
+// A ray through a map from voxel to voxel (Amanatides and Woo 1987), in voxels. Where it crosses a
+// face follows from the face, not from the crossing before, so nothing adds up.
+class RayWalk {
  public:
-  VoxelWalk(const Eigen::Vector3d& from, const Eigen::Vector3d& unit_direction)
-      : voxel_(from.array().floor().cast<int>()) {
+  RayWalk(const VoxelMap& map, const Eigen::Vector3d& from, const Eigen::Vector3d& unit_direction)
+      : map_(map), voxel_(from.array().floor().cast<int>()) {
     for (int axis = 0; axis < 3; ++axis) {
       const double direction = unit_direction[axis];
       step_[axis] = direction > 0.0 ? 1 : -1;
+      enters_block_at_[axis] = direction > 0.0 ? 0 : kBlockSide - 1;
       // Along an axis that it does not follow it crosses a face infinitely late.
       inverse_[axis] = direction == 0.0 ? 0.0 : 1.0 / direction;
       start_[axis] = direction == 0.0 ? std::numeric_limits<double>::infinity()
                                       : ((direction > 0.0 ? 1.0 : 0.0) - from[axis]) / direction;
       next_[axis] = next_face(axis);
     }
+    enter_block();
   }
 
-  const Eigen::Vector3i& voxel() const { return voxel_; }
+  const Eigen::Vector3i& index() const { return voxel_; }
   double entered_at() const { return entered_at_; }
+  const PackedVoxel& voxel() const {
+    return block_ == nullptr ? kUnknownVoxel
+                             : block_->voxels.packed(static_cast<std::size_t>(position_));
+  }
+  // The axis is decided by branches: processors foresee much of a straight line, and then a step
+  // need not wait for the faces of the one before.
   void step() {
-    const int nearer_of_xy = next_[0] <= next_[1] ? 0 : 1;
-    const int axis = next_[nearer_of_xy] <= next_[2] ? nearer_of_xy : 2;
-    entered_at_ = next_[axis];
-    voxel_[axis] += step_[axis];
-    next_[axis] = next_face(axis);
+    if (next_[0] <= next_[1])
+      next_[0] <= next_[2] ? cross<0>() : cross<2>();
+    else
+      next_[1] <= next_[2] ? cross<1>() : cross<2>();
   }
 
  private:
   double next_face(int axis) const { return voxel_[axis] * inverse_[axis] + start_[axis]; }
+  void enter_block() {
+    block_ = map_.find_block(block_of(voxel_));
+    position_ = position_in_block(voxel_);
+  }
+  template <int Axis>
+  void cross() {
+    entered_at_ = next_[Axis];
+    voxel_[Axis] += step_[Axis];
+    next_[Axis] = next_face(Axis);
+    if ((voxel_[Axis] & (kBlockSide - 1)) == enters_block_at_[Axis])
+      enter_block();
+    else
+      position_ += step_[Axis] * (1 << Axis * kBlockSideLog2);
+  }
 
-  Eigen::Vector3i voxel_, step_;
+  const VoxelMap& map_;
+  const VoxelBlock* block_ = nullptr;
+  int position_ = 0;  // in the block
+  Eigen::Vector3i voxel_, step_, enters_block_at_;
   Eigen::Vector3d inverse_, start_, next_;
   double entered_at_ = 0.0;
 };
@@ -95,17 +120,20 @@ bool contains(const VoxelBounds& box, const Eigen::Vector3i& voxel) {
 MapQueries::MapQueries(const VoxelMap& map, const QueryParams& params)
     : map_(map), params_(params) {}
 
-VoxelState MapQueries::state_at(const Eigen::Vector3d& p_world) const {
-  const Voxel voxel = map_.at(voxel_index_of(map_.voxel_size_m(), p_world));
-  return state_of(voxel);
-}
-
 std::vector<VoxelState> MapQueries::states_at(std::span<const Eigen::Vector3d> points_world) const {
+  // First where some voxels lie, then what they say: their memory is fetched at the same time.
+  constexpr std::size_t kAtATime = 32;
   NearbyVoxels voxels(map_);
-  std::vector<VoxelState> states;
-  states.reserve(points_world.size());
-  for (const Eigen::Vector3d& p : points_world)
-    states.push_back(state_of(voxels.at(voxel_index_of(map_.voxel_size_m(), p))));
+  std::vector<VoxelState> states(points_world.size());
+  std::array<const PackedVoxel*, kAtATime> found;
+  for (std::size_t first = 0; first < states.size(); first += kAtATime) {
+    const std::size_t count = std::min(kAtATime, states.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      found[i] = &voxels.at(voxel_index_of(map_.voxel_size_m(), points_world[first + i]));
+      __builtin_prefetch(found[i]);
+    }
+    for (std::size_t i = 0; i < count; ++i) states[first + i] = state_of(*found[i]);
+  }
   return states;
 }
 
@@ -121,11 +149,10 @@ std::optional<RayHit> MapQueries::cast_ray(const Eigen::Vector3d& from_world,
       !std::isfinite(range_m))
     throw std::logic_error("cast_ray: start, direction or range is not finite, or no direction");
   const double size_m = map_.voxel_size_m();
-  NearbyVoxels voxels(map_);
-  for (VoxelWalk walk(from_world / size_m, direction_world.normalized());
+  for (RayWalk walk(map_, from_world / size_m, direction_world.normalized());
        walk.entered_at() * size_m <= range_m; walk.step()) {
-    const VoxelState state = state_of(voxels.at(walk.voxel()));
-    if (is_obstacle(state)) return RayHit{walk.voxel(), walk.entered_at() * size_m, state};
+    const VoxelState state = state_of(walk.voxel());
+    if (is_obstacle(state)) return RayHit{walk.index(), walk.entered_at() * size_m, state};
   }
   return std::nullopt;
 }

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "stereovox/core/grid_geometry.h"
 #include "stereovox/occupancy/voxel_map.h"
 
 namespace stereovox {
@@ -47,7 +48,9 @@ class MapQueries {
   VoxelState state_of(const PackedVoxel& voxel) const {
     return state(voxel.state, voxel.observations);
   }
-  VoxelState state_at(const Eigen::Vector3d& p_world) const;
+  VoxelState state_at(const Eigen::Vector3d& p_world) const {
+    return state_of(map_.packed_at(voxel_index_of(map_.voxel_size_m(), p_world)));
+  }
   std::vector<VoxelState> states_at(std::span<const Eigen::Vector3d> points_world) const;
 
   // The first voxel on the ray that is occupied, or unknown when that counts as occupied, up to
@@ -67,8 +70,11 @@ class MapQueries {
 
  private:
   VoxelState state(float state, int observations) const {
-    if (observations == 0 || observations < params_.min_observations) return VoxelState::unknown;
-    return state > params_.threshold ? VoxelState::occupied : VoxelState::free;
+    // Without a branch: a wrong guess would be known only when the voxel's memory has come.
+    const int is_seen = (observations > 0) & (observations >= params_.min_observations);
+    const int is_above = state > params_.threshold;
+    static_assert(int(VoxelState::free) == 1 && int(VoxelState::occupied) == 2);
+    return static_cast<VoxelState>(is_seen * (1 + is_above));
   }
   bool is_obstacle(VoxelState state) const;
   void search_nearest(const VoxelBlock& block, const Eigen::Vector3d& p_world, double range_m,

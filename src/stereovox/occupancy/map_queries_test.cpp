@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -32,6 +33,33 @@ TEST(MapQueries, TellTheStatesApart) {
                                           VoxelState::unknown};
   EXPECT_EQ(queries.states_at(points), states);
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(queries.state_at(points[i]), states[i]);
+}
+
+TEST(MapQueries, ManyStatesAskedAtOnceAreThoseOfEachAlone) {
+  std::mt19937 random(9);
+  std::uniform_int_distribution<int> place(-9, 9), count(1, 9);
+  std::uniform_real_distribution<float> state(0.0F, 1.0F);
+  VoxelMap map(kSize_m);
+  for (int i = 0; i < 5000; ++i)
+    set(map, {place(random), place(random), place(random)}, state(random),
+        static_cast<std::uint16_t>(count(random)));
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 1003; ++i)
+    points.emplace_back(0.13 * place(random), 0.13 * place(random), 0.13 * place(random));
+  points.emplace_back(1e9, 0, 0);  // beyond the lattice
+  const MapQueries queries(map, {.threshold = 0.6F, .min_observations = 3});
+  const std::vector<VoxelState> states = queries.states_at(points);
+  ASSERT_EQ(states.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Voxel voxel = map.at(voxel_index_of(kSize_m, points[i]));
+    const VoxelState expected = voxel.observations < 3 ? VoxelState::unknown
+                                : voxel.state > 0.6F   ? VoxelState::occupied
+                                                       : VoxelState::free;
+    EXPECT_EQ(states[i], expected);
+    EXPECT_EQ(queries.state_at(points[i]), expected);
+  }
+  for (const VoxelState each : {VoxelState::unknown, VoxelState::free, VoxelState::occupied})
+    EXPECT_GT(std::ranges::count(states, each), 20);
 }
 
 TEST(MapQueries, VoxelsObservedTooSeldomAreUnknown) {

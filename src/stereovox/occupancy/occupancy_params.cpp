@@ -114,6 +114,7 @@ void OccupancyParams::describe(ParameterList& list) {
               "the paper as printed, as corrected, or that with parameters for fine voxels",
               [this](OccupancyPreset chosen) { apply_preset(chosen, *this); });
   describe_selection(*this, list);
+  list.section("smoothing", smoothing);
   list.section("error_model", error_model);
   list.one_of("observation", observation,
               "eq. (12): evidence of one point for one voxel; continuous_log_odds has its own");

@@ -12,6 +12,7 @@
 #include "stereovox/core/parameters.h"
 #include "stereovox/occupancy/homogeneity.h"
 #include "stereovox/occupancy/observation_models.h"
+#include "stereovox/occupancy/smooth_disparity.h"
 #include "stereovox/occupancy/stereo_error_model.h"
 #include "stereovox/occupancy/update_rules.h"
 #include "stereovox/occupancy/voxel_evidence.h"
@@ -40,6 +41,7 @@ struct OccupancyParams {
   double min_height_m = -0.2;
   double max_height_m = 2.0;
 
+  SmoothingParams smoothing;
   StereoErrorModel error_model;
   ObservationModel observation = MinRampObservation{};
   UnionRule union_rule = RankUnion{};

@@ -24,6 +24,7 @@ struct PackedVoxel {
   std::uint16_t time = 0;  // number of its time in the block
 };
 static_assert(sizeof(PackedVoxel) == 8);
+inline constexpr PackedVoxel kUnknownVoxel{};
 
 class BlockVoxels {
  public:

@@ -82,7 +82,8 @@ VoxelBlock& VoxelMap::find_or_create_block(const Eigen::Vector3i& block_index) {
   const std::size_t position = position_in_tile(block_index);
   auto& block = tile.blocks[position];
   if (block == nullptr) {
-    block = std::make_unique<VoxelBlock>(VoxelBlock{block_index, {}});
+    block = std::make_unique<VoxelBlock>();
+    block->index = block_index;
     ++block_count_;
   }
   mark_changed(tile, position);

@@ -55,6 +55,13 @@ class VoxelMap {
     return block == nullptr ? Voxel{}
                             : block->voxels[static_cast<std::size_t>(position_in_block(index))];
   }
+  // The same as it lies in memory, without time and ignorance. Good until the map changes.
+  const PackedVoxel& packed_at(const Eigen::Vector3i& index) const {
+    const VoxelBlock* const block = find_block(block_of(index));
+    return block == nullptr
+               ? kUnknownVoxel
+               : block->voxels.packed(static_cast<std::size_t>(position_in_block(index)));
+  }
   // For single voxels; a loop goes through the block.
   void set(const Eigen::Vector3i& index, const Voxel& voxel);
 
@@ -63,8 +70,9 @@ class VoxelMap {
   const VoxelBlock* find_block(const Eigen::Vector3i& block_index) const {
     VoxelTile* const tile = find_tile(block_index);
     if (tile == nullptr) return nullptr;
-    if (tile->is_out) bring_back(*tile);
-    return tile->blocks[position_in_tile(block_index)].get();
+    const auto& block = tile->blocks[position_in_tile(block_index)];
+    if (block == nullptr && tile->is_out) bring_back(*tile);
+    return block.get();
   }
   void erase_block(const Eigen::Vector3i& block_index);
 

@@ -61,7 +61,8 @@ struct KnownCounts {
 
 struct VoxelTile {
   Eigen::Vector3i index;
-  TileBlocks blocks;  // all nullptr while the tile is out
+  bool is_out = false;  // in the store only
+  TileBlocks blocks;    // all nullptr while the tile is out
   std::array<ChangeStamp, kBlocksPerTile> changed_at{};
   ChangeStamp used_at = 0;  // of the last change or the return from the store
 
@@ -69,7 +70,6 @@ struct VoxelTile {
   StoredPlace stored;
   ChangeStamp stored_at = 0;  // changes up to this one are stored
   KnownCounts stored_known;
-  bool is_out = false;  // in the store only
 
   bool is_measured = true;  // memory_bytes is up to date
   std::size_t memory_bytes = 0;

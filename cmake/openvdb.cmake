@@ -1,0 +1,16 @@
+# OpenVDB is optional: STEREOVOX_OPENVDB_LIBRARIES is empty without it. Debian has neither a package
+# file of CMake nor of pkg-config for it, and does not say that its headers need those of Boost.
+set(STEREOVOX_OPENVDB AUTO CACHE STRING "Write .vdb with OpenVDB: ON, OFF, or AUTO (when it is there)")
+set_property(CACHE STEREOVOX_OPENVDB PROPERTY STRINGS AUTO ON OFF)
+set(STEREOVOX_OPENVDB_LIBRARIES "")
+if(STEREOVOX_OPENVDB)
+  find_path(OPENVDB_INCLUDE_DIR openvdb/openvdb.h)
+  find_path(OPENVDB_BOOST_INCLUDE_DIR boost/numeric/conversion/conversion_traits.hpp)
+  find_library(OPENVDB_LIBRARY openvdb)
+  find_library(OPENVDB_IMATH_LIBRARY NAMES Imath Imath-3_1)
+  if(OPENVDB_INCLUDE_DIR AND OPENVDB_BOOST_INCLUDE_DIR AND OPENVDB_LIBRARY AND OPENVDB_IMATH_LIBRARY)
+    set(STEREOVOX_OPENVDB_LIBRARIES ${OPENVDB_LIBRARY} ${OPENVDB_IMATH_LIBRARY} TBB::tbb)
+  elseif(NOT STEREOVOX_OPENVDB STREQUAL AUTO)
+    message(FATAL_ERROR "STEREOVOX_OPENVDB is ${STEREOVOX_OPENVDB}, but OpenVDB, Imath or Boost is missing")
+  endif()
+endif()
