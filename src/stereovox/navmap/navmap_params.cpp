@@ -10,6 +10,7 @@ namespace {
 // What a neutral voxel falls to when about ten frames see it free. The far side of a wall, where
 // the points' error leaves faint evidence, stays above.
 constexpr double kTunedFreeThreshold = 0.25;
+constexpr int kTunedMinObservations = 2;
 constexpr double kTunedWallContrast = 0.1;
 constexpr double kTunedSureState = 0.75;
 
@@ -36,20 +37,19 @@ std::span<const std::string> names_of(HiddenCells) {
 }
 
 void NavmapParams::describe(ParameterList& list) {
-  list.preset("preset", preset, "the paper as printed, as corrected, or tuned",
-              [this](NavmapPreset p) {
-                preset = p;
-                const bool literal = p == NavmapPreset::literal;
-                column = literal ? ColumnRule::whole : ColumnRule::band;
-                min_observations = literal ? 1 : NavmapParams{}.min_observations;
-                free_threshold =
-                    p == NavmapPreset::tuned ? kTunedFreeThreshold : NavmapParams{}.free_threshold;
-                label_rule = literal ? LabelRule::as_printed : LabelRule::visible;
-                wall_contrast =
-                    p == NavmapPreset::tuned ? kTunedWallContrast : NavmapParams{}.wall_contrast;
-                sure_state = p == NavmapPreset::tuned ? kTunedSureState : NavmapParams{}.sure_state;
-                hidden_cells = p == NavmapPreset::tuned ? HiddenCells::unknown : HiddenCells::keep;
-              });
+  list.preset(
+      "preset", preset, "the paper as printed, as corrected, or tuned", [this](NavmapPreset p) {
+        const bool literal = p == NavmapPreset::literal, tuned = p == NavmapPreset::tuned;
+        const NavmapParams corrected;
+        preset = p;
+        column = literal ? ColumnRule::whole : ColumnRule::band;
+        min_observations = literal ? 1 : tuned ? kTunedMinObservations : corrected.min_observations;
+        free_threshold = tuned ? kTunedFreeThreshold : corrected.free_threshold;
+        label_rule = literal ? LabelRule::as_printed : LabelRule::visible;
+        wall_contrast = tuned ? kTunedWallContrast : corrected.wall_contrast;
+        sure_state = tuned ? kTunedSureState : corrected.sure_state;
+        hidden_cells = tuned ? HiddenCells::unknown : HiddenCells::keep;
+      });
   list("column", column, "which voxels above a cell count: all, or those in the height band");
   list("min_height_m", min_height_m, {-10, 100}, "lower end of the band, above the floor");
   list("max_height_m", max_height_m, {-10, 100}, "upper end of the band, above the floor");

@@ -131,6 +131,8 @@ TEST(NavmapParams, AFieldSetBesideAPresetKeepsItsValue) {
   apply_settings({{"preset", "corrected"}}, params);
   EXPECT_EQ(params.column, ColumnRule::band);
   EXPECT_EQ(params.min_observations, 3);
+  apply_settings({{"preset", "tuned"}}, params);
+  EXPECT_EQ(params.min_observations, 2);
 }
 
 }  // namespace

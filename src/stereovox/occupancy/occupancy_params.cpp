@@ -29,10 +29,12 @@ OccupancyParams literal_params() {
 // points that must be the majority near a voxel, keep surfaces thin although far points count.
 // Homogeneity is left out: it kept thin things from ever entering the map. Free space is read from
 // the image as a whole, which costs a fraction of the rays and clears no voxel that few rays graze.
+// Points of one surface are averaged a little, which their noise, but no edge, notices.
 OccupancyParams tuned_params() {
   OccupancyParams p;
   p.preset = OccupancyPreset::tuned;
   p.observed_set = ObservedSet::projected;
+  p.smoothing.radius_px = 2;
   p.max_sigma_half_voxels = 4.0;
   p.free_margin_sigmas = 2.0;
   p.union_rule = RankUnion{.quantile = 0.01, .majority = 0.3};
@@ -96,6 +98,7 @@ std::span<const std::string> names_of(ConflictRule) {
 void apply_preset(OccupancyPreset preset, OccupancyParams& params) {
   const OccupancyParams chosen = params_of(preset);
   params.preset = preset;
+  params.smoothing = chosen.smoothing;
   params.max_sigma_half_voxels = chosen.max_sigma_half_voxels;
   params.error_model.noise = chosen.error_model.noise;
   params.error_model.depth_variance = chosen.error_model.depth_variance;

@@ -23,6 +23,8 @@ constexpr double kMinCondition = 1e-12;
 constexpr double kHuberSigmas = 1.345;
 // Rounding alone leaves a third of a step.
 constexpr double kMinSigma = 0.3;
+// Rounding of sums leaves less than this of none.
+constexpr double kNoVariance = 1e-6;
 // The surroundings whose mean is taken away reach this part of the width in each direction.
 constexpr int kReachesPerWidth = 16;
 const Matrix6d kUnknown = Matrix6d::Constant(std::numeric_limits<double>::infinity());
@@ -142,7 +144,7 @@ Exposure exposure_of(const std::vector<SeenPixel>& pixels) {
     cc += c * c;
     rc += r * c;
   }
-  if (rr <= 0.0 || cc <= 0.0) return exposure;
+  if (std::min(rr, cc) <= kNoVariance * count) return exposure;
   exposure.correlation = rc / std::sqrt(rr * cc);
   exposure.gain = rc / rr;
   exposure.sigma = std::sqrt((cc - rc * rc / rr) / count);

@@ -44,15 +44,38 @@ OdometryResult Odometry::place(LeveledFrame& frame) {
   Comparison comparison =
       comparer_.compare(frame, local_keyframes(reference_), {T_segment_predicted, last_});
   if (!comparison.is_trusted()) return search(frame, comparison);
-  // Few corners may know the place less well than all pixels do.
-  if (comparison.estimate.inliers < params_.quality.plenty_inliers) {
-    const auto near = find_near_last_pose(frame, T_segment_predicted);
-    if (near && sigma_m(near->estimate) < sigma_m(comparison.estimate)) comparison = *near;
-  }
+  if (auto better = look_closer(frame, comparison, T_segment_predicted))
+    comparison = std::move(*better);
   // The camera may be back where an earlier segment knew its way.
   if (const auto earlier = recognise(frame, true, 1))
     return accept_in_earlier_segment(frame, comparison, *earlier);
   return accept(frame, comparison);
+}
+
+// Few corners may know the place less well than all pixels do, and a pattern that repeats may lead
+// them to a wrong one.
+std::optional<Comparison> Odometry::look_closer(LeveledFrame& frame, const Comparison& found,
+                                                const std::optional<SE3>& T_segment_predicted) {
+  const SE3& T_segment_found = found.estimate.T_reference_camera;
+  const bool is_weak = found.estimate.inliers < params_.quality.plenty_inliers;
+  const bool is_surprising =
+      T_segment_predicted && are_apart(*T_segment_predicted, T_segment_found, found);
+  if (!is_weak && !is_surprising) return std::nullopt;
+  auto near = find_near_last_pose(frame, T_segment_predicted);
+  if (!near) return std::nullopt;
+  const bool is_surer = sigma_m(near->estimate) < sigma_m(found.estimate);
+  const bool is_elsewhere = are_apart(near->estimate.T_reference_camera, T_segment_found, found);
+  return (is_weak && is_surer) || (is_surprising && is_elsewhere) ? near : std::nullopt;
+}
+
+// So far that only a sudden motion or a wrong pose explains it.
+bool Odometry::are_apart(const SE3& a, const SE3& b, const Comparison& seen) const {
+  const SE3 between = inverse(a) * b;
+  const QualityParams& quality = params_.quality;
+  return rotation_angle_rad(between) * kDegrees > quality.max_surprise_deg ||
+         between.translation.norm() >
+             quality.max_surprise *
+                 median_depth_m(comparer_.camera(seen.level), seen.reference_points());
 }
 
 OdometryResult Odometry::start(LeveledFrame& frame) {

@@ -60,6 +60,9 @@ class Odometry {
  private:
   void check_sizes(const RectifiedPair& pair, const DisparityImage& disparity) const;
   OdometryResult place(LeveledFrame& frame);
+  std::optional<Comparison> look_closer(LeveledFrame& frame, const Comparison& found,
+                                        const std::optional<SE3>& T_segment_predicted);
+  bool are_apart(const SE3& a, const SE3& b, const Comparison& seen) const;
   OdometryResult start(LeveledFrame& frame);
   OdometryResult accept(LeveledFrame& frame, const Comparison& comparison);
   OdometryResult accept_in_earlier_segment(LeveledFrame& frame, const Comparison& later,

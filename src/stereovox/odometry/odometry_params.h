@@ -22,6 +22,8 @@ struct QualityParams {
   double max_sigma_deg = 1.0;
   double max_speed_m_per_s = 60.0;
   double max_turn_deg_per_s = 400.0;
+  double max_surprise = 0.03;
+  double max_surprise_deg = 4.0;
 
   void describe(ParameterList& list) {
     list("min_consistent", min_consistent, {3, 1000}, "matches that agree on one rigid motion");
@@ -39,6 +41,10 @@ struct QualityParams {
          "largest standard deviation of the direction");
     list("max_speed_m_per_s", max_speed_m_per_s, {0.01, 1000.0}, "faster motion is not believed");
     list("max_turn_deg_per_s", max_turn_deg_per_s, {1.0, 1e5}, "faster turning is not believed");
+    list("max_surprise", max_surprise, {0.001, 10.0},
+         "farther from where steady motion leads than this share of the median distance of what is "
+         "seen, all pixels are asked as well");
+    list("max_surprise_deg", max_surprise_deg, {0.01, 180.0}, "... or turned by more");
   }
 };
 

@@ -54,7 +54,7 @@ struct Paint {
   double plain_from_x_m = 1e9;
 
   double brightness(const Eigen::Vector3d& p) const {
-    return p.x() > plain_from_x_m ? 50.0 + 80.0 * texture(p, 1.0) + 25.0 * texture(p, 0.5)
+    return p.x() > plain_from_x_m ? 50.0 + 70.0 * texture(p, 1.0) + 40.0 * texture(p, 0.5)
                                   : 30.0 + 110.0 * texture(p, 0.3) + 90.0 * texture(p, 0.12);
   }
 };
