@@ -61,11 +61,12 @@ std::optional<Comparison> Odometry::look_closer(LeveledFrame& frame, const Compa
   const bool is_surprising =
       T_segment_predicted && are_apart(*T_segment_predicted, T_segment_found, found);
   if (!is_weak && !is_surprising) return std::nullopt;
-  auto near = find_near_last_pose(frame, T_segment_predicted);
+  const auto near = find_near_last_pose(frame, T_segment_predicted);
   if (!near) return std::nullopt;
   const bool is_surer = sigma_m(near->estimate) < sigma_m(found.estimate);
   const bool is_elsewhere = are_apart(near->estimate.T_reference_camera, T_segment_found, found);
-  return (is_weak && is_surer) || (is_surprising && is_elsewhere) ? near : std::nullopt;
+  if ((is_weak && is_surer) || (is_surprising && is_elsewhere)) return with_keyframe(*near);
+  return std::nullopt;
 }
 
 // So far that only a sudden motion or a wrong pose explains it.
@@ -170,7 +171,7 @@ OdometryResult Odometry::search(LeveledFrame& frame, const Comparison& failed) {
   if (const auto found = recognise(frame, false, params_.keyframes.attempts_per_frame))
     return accept(frame, *found);
   if (const auto near = find_near_last_pose(frame, T_segment_predicted))
-    return accept(frame, *near);
+    return accept(frame, with_keyframe(*near));
   if (const auto begun = begin_segment(frame)) return accept(frame, *begun);
   if (corner_count(frame) >= params_.quality.min_recognised) candidate_ = make_keyframe(frame);
   return lost(failed);
@@ -181,15 +182,25 @@ OdometryResult Odometry::search(LeveledFrame& frame, const Comparison& failed) {
 std::optional<Comparison> Odometry::find_near_last_pose(
     LeveledFrame& frame, const std::optional<SE3>& T_segment_predicted) {
   if (candidate_) return std::nullopt;
-  if (last_frame_) add_keyframe(*std::exchange(last_frame_, nullptr), *last_comparison_);
   std::vector<SE3> starts;
   for (const double yaw_deg : kTriedTurns_deg)
     starts.push_back(last_->T_segment_camera * exp(turn_about_y(yaw_deg)));
   if (T_segment_predicted) starts.push_back(*T_segment_predicted);
-  Comparison comparison =
-      comparer_.compare_directly(frame, places_.keyframes()[reference_], starts, last_);
+  if (last_frame_)
+    last_view_ = Keyframe{.segment = last_->segment,
+                          .T_segment_camera = last_->T_segment_camera,
+                          .surfaces = FrameComparer::surfaces_of(*last_frame_)};
+  Keyframe& last_view = last_frame_ ? *last_view_ : places_.keyframes()[reference_];
+  Comparison comparison = comparer_.compare_directly(frame, last_view, starts, last_);
   if (!comparison.is_trusted()) return std::nullopt;
   return comparison;
+}
+
+// What was compared with the frame before, which becomes a keyframe.
+Comparison Odometry::with_keyframe(Comparison near) {
+  if (last_frame_) add_keyframe(*std::exchange(last_frame_, nullptr), *last_comparison_);
+  near.local = {&places_.keyframes()[reference_]};
+  return near;
 }
 
 OdometryResult Odometry::lost(const Comparison& comparison) const {

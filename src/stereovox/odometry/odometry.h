@@ -75,6 +75,7 @@ class Odometry {
                                       int attempts);
   std::optional<Comparison> find_near_last_pose(LeveledFrame& frame,
                                                 const std::optional<SE3>& T_segment_predicted);
+  Comparison with_keyframe(Comparison near);
   std::optional<Comparison> begin_segment(LeveledFrame& frame);
   Keyframe make_keyframe(LeveledFrame& frame) const;
   void add_keyframe(LeveledFrame& frame, const Comparison& comparison);
@@ -92,6 +93,7 @@ class Odometry {
   // The frame placed last, and how; none when it is a keyframe.
   std::unique_ptr<LeveledFrame> last_frame_;
   std::optional<Comparison> last_comparison_;
+  std::optional<Keyframe> last_view_;  // what all pixels are compared with
   std::optional<Keyframe> candidate_;  // a lost frame, perhaps the start of a new segment
   int segments_ = 1;                   // begun so far
   std::size_t next_recognised_ = 0;    // which keyframe to look for next
