@@ -22,9 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Counts up when the simulator draws other images for the same parameters, or the stages up to
-// odometry compute other results.
-constexpr int kRendererVersion = 1, kMatcherVersion = 1;
+// Counts up when the simulator draws other images for the same parameters.
+constexpr int kRendererVersion = 1;
 constexpr std::uint64_t kMaxKeyBytes = 16ULL << 20;
 constexpr const char *kKeyFile = "key.txt", *kEstimatedFile = "estimated.tum";
 // Says that every pair was rendered: one that was stopped leaves a data set, too, but a short one.
@@ -65,7 +64,7 @@ std::string render_key(const RecordingRequest& request) {
 }
 
 std::string match_key(const RecordingRequest& request) {
-  return fmt::format("matcher {}\n{}", kMatcherVersion,
+  return fmt::format("build {}\n{}", request.build,
                      text_of(request.pipeline, "rectification;matcher;odometry;refine;"));
 }
 

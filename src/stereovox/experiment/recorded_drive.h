@@ -37,6 +37,7 @@ struct RecordingRequest {
   std::string drive;
   SimulationParams simulation;
   PipelineConfig pipeline;  // rectification, matcher, odometry
+  std::string build = {};   // of the program: another one may match and track differently
 };
 
 struct RecordingProgress {

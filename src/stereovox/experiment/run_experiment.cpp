@@ -27,12 +27,14 @@ std::vector<Drive> drives_of(const ExperimentConfig& config) {
   return drives;
 }
 
-RecordingRequest request_of(const ExperimentConfig& config, const Drive& drive) {
+RecordingRequest request_of(const ExperimentConfig& config, const Drive& drive,
+                            const std::string& build = {}) {
   RecordingRequest request{.name = fmt::format("{}_s{}", drive.world.name, drive.seed),
                            .world = drive.world.path,
                            .drive = drive.world.drive,
                            .simulation = config.simulation,
-                           .pipeline = config.pipeline};
+                           .pipeline = config.pipeline,
+                           .build = build};
   request.simulation.seed = drive.seed;
   return request;
 }
@@ -52,7 +54,7 @@ std::optional<std::vector<ResultRow>> rows_of(const ExperimentConfig& config, co
                                               const std::string& build,
                                               const RecordingProgress& progress) {
   const std::optional<RecordedDrive> recorded =
-      record_drive(cache, request_of(config, drive), 1, progress);
+      record_drive(cache, request_of(config, drive, build), 1, progress);
   if (!recorded) return std::nullopt;
   const std::string key = content_name(build + config.source_text + recorded->key);
   const fs::path file = output / "runs" / fmt::format("{}_s{}.json", drive.world.name, drive.seed);
