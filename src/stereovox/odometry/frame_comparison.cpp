@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "stereovox/core/timestamp.h"
+#include "stereovox/odometry/image_difference.h"
 
 namespace stereovox {
 namespace {
@@ -17,6 +18,9 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 // Halved images that are aligned as wholes: the coarsest bridge large steps.
 constexpr std::size_t kDirectLevels = 4;
 constexpr int kMinDirectHeight_px = 16;
+// The first of the halved images that tell two places apart: finer ones show the pattern that
+// misled the corners, and errors of the disparities, rather than what lies beneath.
+constexpr std::size_t kFirstTellingLevel = 2;
 
 double largest_sigma(const Eigen::Matrix3d& covariance) {
   if (!covariance.allFinite()) return std::numeric_limits<double>::infinity();
@@ -116,12 +120,7 @@ Comparison FrameComparer::compare_at(LeveledFrame& frame, std::size_t level,
   const Keyframe& reference = comparison.reference();
   const FeatureSet& features = frame.at(level).features;
   const LevelView view{level, cameras_[level], frame.at(level).images.pair};
-  std::optional<SE3> T_reference_predicted;
-  if (expected.T_segment_predicted)
-    T_reference_predicted = inverse(reference.T_segment_camera) * *expected.T_segment_predicted;
-  comparison.initial =
-      find_initial_motion(view.camera, comparison.reference_points(), features,
-                          T_reference_predicted, params_.matching, params_.refinement);
+  comparison.initial = initial_motion(view, reference, features, expected);
   comparison.doubt = doubt_about(comparison.initial, params_.quality);
   if (!comparison.is_trusted()) return comparison;
 
@@ -140,6 +139,34 @@ Comparison FrameComparer::compare_at(LeveledFrame& frame, std::size_t level,
     comparison.doubt = doubt_about_speed(expected.last, frame.stamp_ns, reference.segment,
                                          comparison.estimate.T_reference_camera, params_.quality);
   return comparison;
+}
+
+InitialMotion FrameComparer::initial_motion(const LevelView& view, const Keyframe& reference,
+                                            const FeatureSet& features,
+                                            const Expectation& expected) const {
+  const FeatureSet& points = reference.levels[view.level].points;
+  std::optional<SE3> T_reference_predicted;
+  if (expected.T_segment_predicted)
+    T_reference_predicted = inverse(reference.T_segment_camera) * *expected.T_segment_predicted;
+  if (expected.only_near)
+    return find_motion_near(view.camera, points, features, T_reference_predicted.value(),
+                            params_.matching, params_.refinement);
+  return find_initial_motion(view.camera, points, features, T_reference_predicted, params_.matching,
+                             params_.refinement);
+}
+
+double FrameComparer::difference_ratio(LeveledFrame& frame, LeveledFrame& reference,
+                                       const SE3& T_segment_reference, const SE3& T_segment_a,
+                                       const SE3& T_segment_b) const {
+  std::vector<ViewPair> views;
+  for (std::size_t level = kFirstTellingLevel; level <= kDirectLevels; ++level) {
+    if (frame.at(level).images.pair.left.height() < kMinDirectHeight_px) break;
+    views.push_back(
+        {direct_cameras_[level - 1], reference.at(level).images, frame.at(level).images});
+  }
+  const SE3 T_reference_segment = inverse(T_segment_reference);
+  return stereovox::difference_ratio(views, T_reference_segment * T_segment_a,
+                                     T_reference_segment * T_segment_b);
 }
 
 std::vector<SurfaceLevel> FrameComparer::surfaces_of(LeveledFrame& frame) {

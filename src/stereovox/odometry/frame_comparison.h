@@ -55,6 +55,7 @@ struct LastPose {
 struct Expectation {
   std::optional<SE3> T_segment_predicted = {};  // where steady motion takes the camera
   std::optional<LastPose> last = {};            // the frame must be within reach of it
+  bool only_near = false;                       // corners are matched near the prediction only
 };
 
 // What comparing a frame with keyframes gave; trusted when `doubt` is empty.
@@ -92,10 +93,17 @@ class FrameComparer {
   Comparison compare_directly(LeveledFrame& frame, Keyframe& reference,
                               std::span<const SE3> starts_T_segment_camera,
                               const std::optional<LastPose>& last) const;
+  // Below 1 where all pixels speak for `a` rather than for `b` (image_difference.h). Both, as the
+  // place of the reference, are in the frame of one segment.
+  double difference_ratio(LeveledFrame& frame, LeveledFrame& reference,
+                          const SE3& T_segment_reference, const SE3& T_segment_a,
+                          const SE3& T_segment_b) const;
   // What compare_directly needs to know of a keyframe.
   static std::vector<SurfaceLevel> surfaces_of(LeveledFrame& frame);
 
  private:
+  InitialMotion initial_motion(const LevelView& view, const Keyframe& reference,
+                               const FeatureSet& features, const Expectation& expected) const;
   DirectAlignment align(LeveledFrame& frame, const Keyframe& reference,
                         std::span<const SE3> starts_T_segment_camera) const;
 

@@ -99,6 +99,16 @@ std::vector<Eigen::Vector2d> expected_pixels(const RectifiedCamera& camera,
   return pixels;
 }
 
+InitialMotion motion_within(double window, const RectifiedCamera& camera,
+                            const FeatureSet& reference, const FeatureSet& current,
+                            const std::optional<SE3>& T_reference_predicted,
+                            const MatchingParams& params, const RefinementParams& refinement) {
+  const auto expected = expected_pixels(camera, reference, T_reference_predicted);
+  const auto matches = match_features(reference, expected, current, window * camera.pinhole.width,
+                                      params.min_correlation);
+  return motion_from(camera, reference, current, matches, params, refinement);
+}
+
 // On a repeated pattern a wrong motion finds many consistent matches too, but not most of them.
 bool is_convincing(const InitialMotion& motion, const MatchingParams& params) {
   return motion.consistent_count() >= params.enough_consistent &&
@@ -107,6 +117,13 @@ bool is_convincing(const InitialMotion& motion, const MatchingParams& params) {
 
 }  // namespace
 
+InitialMotion find_motion_near(const RectifiedCamera& camera, const FeatureSet& reference,
+                               const FeatureSet& current, const SE3& T_reference_predicted,
+                               const MatchingParams& params, const RefinementParams& refinement) {
+  return motion_within(params.predicted_window, camera, reference, current, T_reference_predicted,
+                       params, refinement);
+}
+
 InitialMotion find_initial_motion(const RectifiedCamera& camera, const FeatureSet& reference,
                                   const FeatureSet& current,
                                   const std::optional<SE3>& T_reference_predicted,
@@ -114,11 +131,8 @@ InitialMotion find_initial_motion(const RectifiedCamera& camera, const FeatureSe
                                   const RefinementParams& refinement) {
   InitialMotion best;
   const auto attempt = [&](const std::optional<SE3>& T_predicted, double window) {
-    const auto expected = expected_pixels(camera, reference, T_predicted);
-    const auto matches = match_features(reference, expected, current, window * camera.pinhole.width,
-                                        params.min_correlation);
     const InitialMotion motion =
-        motion_from(camera, reference, current, matches, params, refinement);
+        motion_within(window, camera, reference, current, T_predicted, params, refinement);
     if (motion.consistent.size() > best.consistent.size() || best.matches == 0) best = motion;
   };
   if (T_reference_predicted) attempt(T_reference_predicted, params.predicted_window);

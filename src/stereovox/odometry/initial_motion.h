@@ -43,6 +43,11 @@ struct InitialMotion {
   int consistent_count() const { return static_cast<int>(consistent.size()); }
 };
 
+// From corners near the places that `T_reference_predicted` gives alone.
+InitialMotion find_motion_near(const RectifiedCamera& camera, const FeatureSet& reference,
+                               const FeatureSet& current, const SE3& T_reference_predicted,
+                               const MatchingParams& params, const RefinementParams& refinement);
+
 // Tries the small window around the places that `T_reference_predicted` gives; when there is no
 // prediction or too few matches are consistent, both windows around the unmoved places. The try
 // with most consistent matches counts.

@@ -86,5 +86,15 @@ TEST(InitialMotionTest, IsNotMisledByARepeatedPattern) {
   EXPECT_LT(error_m(find(moved(0.1), moved(0.1 + 2 * kBrick_m)), moved(0.1)), 0.002);
 }
 
+// Two bricks away alone: the same prediction, but nothing else is tried.
+TEST(InitialMotionTest, NearAWrongPlaceItFindsTheMotionThatAPatternAllowsThere) {
+  const std::vector<Landmark> landmarks = scene();
+  const SE3 wrong = moved(0.1 + 2 * kBrick_m);
+  const InitialMotion motion =
+      find_motion_near(kCamera, features_seen_from(SE3{}, landmarks),
+                       features_seen_from(moved(0.1), landmarks), wrong, {}, {});
+  EXPECT_LT(error_m(motion, wrong), 0.002);
+}
+
 }  // namespace
 }  // namespace stereovox

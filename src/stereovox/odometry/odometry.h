@@ -60,8 +60,10 @@ class Odometry {
  private:
   void check_sizes(const RectifiedPair& pair, const DisparityImage& disparity) const;
   OdometryResult place(LeveledFrame& frame);
-  std::optional<Comparison> look_closer(LeveledFrame& frame, const Comparison& found,
-                                        const std::optional<SE3>& T_segment_predicted);
+  Comparison look_closer(LeveledFrame& frame, Comparison found,
+                         const std::optional<SE3>& T_segment_predicted);
+  Comparison best_around(LeveledFrame& frame, Comparison found, const SE3& T_segment_predicted);
+  bool fits_better(LeveledFrame& frame, const Comparison& a, const Comparison& b) const;
   bool are_apart(const SE3& a, const SE3& b, const Comparison& seen) const;
   OdometryResult start(LeveledFrame& frame);
   OdometryResult accept(LeveledFrame& frame, const Comparison& comparison);
@@ -90,13 +92,13 @@ class Odometry {
   PlaceGraph places_;          // of all segments
   std::size_t reference_ = 0;  // the keyframe that frames are compared with first
   std::optional<LastPose> last_, before_last_;
-  // The frame placed last, and how; none when it is a keyframe.
-  std::unique_ptr<LeveledFrame> last_frame_;
-  std::optional<Comparison> last_comparison_;
-  std::optional<Keyframe> last_view_;  // what all pixels are compared with
-  std::optional<Keyframe> candidate_;  // a lost frame, perhaps the start of a new segment
-  int segments_ = 1;                   // begun so far
-  std::size_t next_recognised_ = 0;    // which keyframe to look for next
+  std::unique_ptr<LeveledFrame> last_frame_;  // placed last
+  bool last_is_keyframe_ = false;
+  std::optional<Comparison> last_comparison_;  // of the last frame, when it is no keyframe
+  std::optional<Keyframe> last_view_;          // what all pixels are compared with
+  std::optional<Keyframe> candidate_;          // a lost frame, perhaps the start of a new segment
+  int segments_ = 1;                           // begun so far
+  std::size_t next_recognised_ = 0;            // which keyframe to look for next
 };
 
 }  // namespace stereovox

@@ -43,7 +43,7 @@ struct QualityParams {
     list("max_turn_deg_per_s", max_turn_deg_per_s, {1.0, 1e5}, "faster turning is not believed");
     list("max_surprise", max_surprise, {0.001, 10.0},
          "farther from where steady motion leads than this share of the median distance of what is "
-         "seen, all pixels are asked as well");
+         "seen, other motions are tried and all pixels asked which one it was");
     list("max_surprise_deg", max_surprise_deg, {0.01, 180.0}, "... or turned by more");
   }
 };

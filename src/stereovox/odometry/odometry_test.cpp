@@ -248,6 +248,26 @@ TEST(Odometry, AWallWithoutCornersIsPassedByItsClouds) {
   EXPECT_GT(lost_without, 2);
 }
 
+// One sudden motion of a camera at rest, as far as half a period and more: corners agree as well on
+// the motion that is a period less.
+TEST(Odometry, ASuddenMotionBeforeAPatternIsNotTakenForOneAPeriodLess) {
+  constexpr double kStep_m = 0.22, kTurn_rad = 0.06;
+  Vector6d step = Vector6d::Zero(), turn = Vector6d::Zero();
+  step[0] = kStep_m;
+  turn[4] = kTurn_rad;
+  for (const Vector6d& motion : {step, Vector6d(-step), turn, Vector6d(-turn)}) {
+    Odometry odometry(kCamera, {});
+    for (int frame = 0; frame < 5; ++frame) {
+      const SE3 truth = frame < 3 ? SE3{} : exp(motion);
+      const OdometryResult result = track(odometry, shot_from(truth, frame, {.period_m = 0.4}));
+      ASSERT_EQ(result.status, OdometryStatus::tracked) << result.reason;
+      const Vector6d error = log(inverse(truth) * result.T_segment_camera);
+      EXPECT_LT(error.head<3>().norm(), kTolerance_m) << motion.transpose() << ", " << frame;
+      EXPECT_LT(error.tail<3>().norm(), kTolerance_rad) << motion.transpose() << ", " << frame;
+    }
+  }
+}
+
 TEST(Odometry, KeepsNoMoreKeyframesThanAllowedAndStillTracks) {
   OdometryParams params;
   params.keyframes.memory_mb = 1.0;  // far less than the frames below need

@@ -49,11 +49,17 @@ struct View {
   cv::Mat1f depth_m = cv::Mat1f(kCamera.pinhole.height, kCamera.pinhole.width);
 };
 
-// How the walls are painted: everywhere alike, or with large clouds from some x on.
+// How the walls are painted: everywhere alike, with large clouds from some x on, or with a pattern
+// that comes again along x, laid over faint clouds.
 struct Paint {
   double plain_from_x_m = 1e9;
+  double period_m = 0.0;  // 0 = no such pattern
 
   double brightness(const Eigen::Vector3d& p) const {
+    if (period_m > 0.0) {
+      const Eigen::Vector3d once(p.x() - period_m * std::floor(p.x() / period_m), p.y(), p.z());
+      return 40.0 + 80.0 * texture(once, 0.1) + 15.0 * texture(p, 0.8) + 12.0 * texture(p, 0.6);
+    }
     return p.x() > plain_from_x_m ? 50.0 + 70.0 * texture(p, 1.0) + 40.0 * texture(p, 0.5)
                                   : 30.0 + 110.0 * texture(p, 0.3) + 90.0 * texture(p, 0.12);
   }
