@@ -26,7 +26,7 @@ OccupancyParams literal_params() {
 }
 
 // A neutral start needs fewer frames to decide; rays that end farther before the surface, and
-// points that must be the majority near a voxel, keep surfaces thin although far points count.
+// points that must be a tenth of those near a voxel, keep surfaces thin although far points count.
 // Homogeneity is left out: it kept thin things from ever entering the map. Free space is read from
 // the image as a whole, which costs a fraction of the rays and clears no voxel that few rays graze.
 // Points of one surface are averaged a little, which their noise, but no edge, notices.
@@ -37,7 +37,7 @@ OccupancyParams tuned_params() {
   p.smoothing.radius_px = 2;
   p.max_sigma_half_voxels = 4.0;
   p.free_margin_sigmas = 2.0;
-  p.union_rule = RankUnion{.quantile = 0.01, .majority = 0.3};
+  p.union_rule = RankUnion{.quantile = 0.01, .majority = 0.1};
   p.homogeneity.min_homogeneity = 1.0;
   p.update = SaturatingRule{.max_credibility = 0.1};
   p.initial_state = 0.5;

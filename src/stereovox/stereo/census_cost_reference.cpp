@@ -41,7 +41,8 @@ int matching_cost_reference(const RectifiedPair& pair, int x, int y, int dispari
   const int x_right = x - disparity_px;
   const int ones = std::popcount(census(left, x, y) ^ census(right, x_right, y));
   const int slopes = std::abs(slope(left, x, y) - slope(right, x_right, y));
-  return mean(ones, std::min(kSlopeWeight * slopes, kMaxSlopeCost));
+  const int both = mean(ones, std::min(kSlopeWeight * slopes, kMaxSlopeCost));
+  return mean(both, mean(both, 0));
 }
 
 }  // namespace stereovox

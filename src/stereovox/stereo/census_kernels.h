@@ -17,9 +17,11 @@ inline constexpr int kCensusHalfWidth_px = 4, kCensusHalfHeight_px = 3;
 inline constexpr int kCandidateStep = 32, kMaxCandidates = 256;
 inline constexpr int kCensusBits = 31;
 // The change of brightness along the row counts up to kMaxSlope_gray; how much it differs weighs
-// this much, up to kMaxSlopeCost, against census bits, and their mean is the cost. Census alone
-// confuses fine structures.
-inline constexpr int kMaxSlope_gray = 40, kSlopeWeight = 4, kMaxSlopeCost = 20;
+// this much, up to kMaxSlopeCost, against census bits. Census alone confuses fine structures, and
+// before mirrors and other weak texture it misses edges, because it does not see how strong they
+// are. The cost is three quarters of the mean of both, rounded up: windows sum it in 16 bits.
+inline constexpr int kMaxSlope_gray = 40, kSlopeWeight = 4, kMaxSlopeCost = 40;
+inline constexpr int kMaxMatchingCost = 27;  // of kCensusBits and kMaxSlopeCost
 inline constexpr int kLocalWidth_px = 5;
 inline constexpr std::uint8_t kNoLocalCost = 255;
 // Rows of bytes may be read and written this far beyond their end.
@@ -49,6 +51,7 @@ struct SweepRow {
   int width_px = 0;
   PixelRow left, right;  // candidate i of left pixel x is right pixel x + i
   std::uint8_t small_penalty = 0;
+  std::uint8_t nearer_penalty = 0;  // of the paths from above, to a disparity one larger
   PenaltyRows penalty;
   // Path costs above their minimum, width x candidates, for the three paths from above. Row y keeps
   // pixel x in slot (first_slot + x) mod width: chosen so that the pixel that a path comes from

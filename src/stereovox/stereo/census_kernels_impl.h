@@ -113,7 +113,9 @@ template <class S>
 template <class S>
 [[gnu::always_inline]] inline typename S::V matching_cost(const typename S::V (&left)[kPlanes],
                                                           const PixelRow& right, int at) {
-  return S::mean(hamming<S>(left, right, at), slope_cost<S>(left[kSlopePlane], right, at));
+  using V = typename S::V;
+  const V both = S::mean(hamming<S>(left, right, at), slope_cost<S>(left[kSlopePlane], right, at));
+  return S::mean(both, S::mean(both, S::spread(0)));
 }
 
 // The costs of all candidates of one pixel on a path, and their smallest.
@@ -157,8 +159,9 @@ template <class S, int N>
 // comes from, above their minimum. Adds to the sums.
 template <class S, int N>
 [[gnu::always_inline]] inline void step_from_above(const typename S::V (&cost)[N],
-                                                   typename S::V small, typename S::V large,
-                                                   std::uint8_t* kept, typename S::V (&sum)[N]) {
+                                                   typename S::V small, typename S::V nearer,
+                                                   typename S::V large, std::uint8_t* kept,
+                                                   typename S::V (&sum)[N]) {
   using V = typename S::V;
   V next[N];
   const V wall = S::spread(kMaxByte);
@@ -171,7 +174,7 @@ template <class S, int N>
     const V upper = load_upper ? S::load(at + 1)
                                : S::from_after(here, n + 1 < N ? S::load(at + S::kSize) : wall);
     before = here;
-    const V beside = S::add_saturated(S::min(lower, upper), small);
+    const V beside = S::min(S::add_saturated(lower, small), S::add_saturated(upper, nearer));
     next[n] = S::add(cost[n], S::min(S::min(here, large), beside));
     all = S::min(all, next[n]);
     sum[n] = S::add_saturated(sum[n], next[n]);
@@ -184,7 +187,7 @@ template <class S, int kCandidates>
 void sweep_down(const SweepRow& row) {
   constexpr int N = kCandidates / S::kSize;
   using V = typename S::V;
-  const V small = S::spread(row.small_penalty);
+  const V small = S::spread(row.small_penalty), nearer = S::spread(row.nearer_penalty);
   std::array<int, 3> slot = row.first_slot;
   for (int x = 0; x < row.width_px; ++x) {
     V words[kPlanes], cost[N], sum[N];
@@ -196,7 +199,8 @@ void sweep_down(const SweepRow& row) {
     }
     for (int k = 0; k < 3; ++k) {
       std::uint8_t* const kept = row.paths_above[k] + slot[k] * kCandidates;
-      step_from_above<S, N>(cost, small, S::spread(row.penalty.above[k][x]), kept, sum);
+      const V large = S::spread(row.penalty.above[k][x]);
+      step_from_above<S, N>(cost, small, nearer, large, kept, sum);
       slot[k] = slot[k] + 1 == row.width_px ? 0 : slot[k] + 1;
     }
     std::uint8_t* const sums = row.sum + x * kCandidates;

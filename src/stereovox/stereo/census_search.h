@@ -13,7 +13,7 @@ struct CensusSearch {
   int left_right_tolerance_px = 3;
   int speckle_size_px = 100;
   int speckle_range_px = 2;
-  double min_confidence = 0.3;
+  double min_confidence = 0.25;
   double island_confidence = 0.96;
 
   int candidates() const {

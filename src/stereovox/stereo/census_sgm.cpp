@@ -20,14 +20,14 @@ constexpr int kWarmUpRows = 12;
 // Fitted by scripts/fit_confidence to cones, motorcycle and six frames of a rendered room. The last
 // bin, which too few samples reach, has the numbers of the one before.
 constexpr ConfidenceModel kModel = {
-    .bias = 2.685,
-    .ratio = 1.778,
-    .left_right = 0.294,
-    .variance = 0.502,
-    .local = 0.0378,
-    .candidates = 0.315,
-    .right = {0.121, 0.246, 0.334, 0.434, 0.547, 0.792, 0.948, 0.983, 0.988, 0.990, 0.994, 0.994},
-    .sigma_px = {0.78, 0.71, 0.69, 0.70, 0.71, 0.64, 0.47, 0.36, 0.28, 0.22, 0.19, 0.19}};
+    .bias = 2.113,
+    .ratio = 1.770,
+    .left_right = 0.341,
+    .variance = 0.494,
+    .local = 0.0232,
+    .candidates = 0.351,
+    .right = {0.123, 0.237, 0.342, 0.447, 0.562, 0.790, 0.949, 0.983, 0.987, 0.989, 0.994, 0.994},
+    .sigma_px = {0.78, 0.71, 0.67, 0.67, 0.69, 0.62, 0.47, 0.34, 0.27, 0.21, 0.18, 0.18}};
 
 SweepParams sweep_params(const CensusSgmParams& p) {
   if (p.smoothness_large <= p.smoothness_small)
@@ -35,6 +35,7 @@ SweepParams sweep_params(const CensusSgmParams& p) {
   SweepParams sweep{.min_disparity_px = p.search.min_disparity_px,
                     .candidates = p.search.candidates(),
                     .small_penalty = p.smoothness_small,
+                    .nearer_penalty = std::min(p.smoothness_nearer, p.smoothness_small),
                     .large_penalty = {}};
   for (std::size_t step = 0; step < sweep.large_penalty.size(); ++step) {
     const double share = p.edge_contrast_gray / (p.edge_contrast_gray + static_cast<double>(step));

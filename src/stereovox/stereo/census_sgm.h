@@ -14,6 +14,7 @@ struct CensusSgmParams {
 
   CensusSearch search;
   int smoothness_small = 18;
+  int smoothness_nearer = 12;
   int smoothness_large = 200;
   double edge_contrast_gray = 3.0;
 
@@ -21,6 +22,9 @@ struct CensusSgmParams {
     search.describe(list);
     list("smoothness_small", smoothness_small, {0, 100},
          "penalty for a disparity step of one pixel (P1), in census bits");
+    list("smoothness_nearer", smoothness_nearer, {0, 100},
+         "the same where a surface comes nearer down the image, as floors do; at most "
+         "smoothness_small");
     list("smoothness_large", smoothness_large, {1, 220},
          "penalty for a larger disparity step where the brightness is even (P2)");
     list("edge_contrast_gray", edge_contrast_gray, {1, 10000},

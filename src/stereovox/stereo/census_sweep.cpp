@@ -9,8 +9,7 @@ namespace {
 
 constexpr int kPenaltyRows = 4;
 
-constexpr int kMaxCost = std::max(kCensusBits, kMaxSlopeCost);
-static_assert(kLocalWidth_px * kMaxCost < kNoLocalCost, "local sums must fit a byte");
+static_assert(kLocalWidth_px * kMaxMatchingCost < kNoLocalCost, "local sums must fit a byte");
 
 }  // namespace
 
@@ -50,6 +49,7 @@ void CensusSweep::give_memory(std::size_t i) {
   SweepRow& row = rows_[i];
   row.width_px = width;
   row.small_penalty = static_cast<std::uint8_t>(params_.small_penalty);
+  row.nearer_penalty = static_cast<std::uint8_t>(params_.nearer_penalty);
   row.cost = cost_[i].data;
   row.sum = sum_[i].data;
   row.penalty.beside = penalties_[i].data;

@@ -20,6 +20,7 @@ struct SweepParams {
   int min_disparity_px = 0;
   int candidates = 64;  // a multiple of kCandidateStep, up to kMaxCandidates
   int small_penalty = 0;
+  int nearer_penalty = 0;  // of the paths from above, to a disparity one larger
   PenaltyTable large_penalty = {};
 
   int max_disparity_px() const { return min_disparity_px + candidates - 1; }

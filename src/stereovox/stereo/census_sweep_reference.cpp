@@ -51,20 +51,22 @@ class Reference {
         const int step =
             std::abs(nearest_pixel(left_, x, y) - nearest_pixel(left_, x + dx, y + dy));
         path[y - first_row_][x] =
-            next_on_path(before, x, y, params_.large_penalty[std::min(step, kPenaltySteps - 1)]);
+            next_on_path(before, x, y, dy < 0 ? params_.nearer_penalty : params_.small_penalty,
+                         params_.large_penalty[std::min(step, kPenaltySteps - 1)]);
         for (int c = 0; c < params_.candidates; ++c)
           sums[y - first_row_][x][c] += path[y - first_row_][x][c];
       }
   }
 
   // The recursion of semi-global matching, eq. (13) of Hirschmueller (PAMI 2008).
-  Costs next_on_path(const Costs& before, int x, int y, int large_penalty) const {
+  Costs next_on_path(const Costs& before, int x, int y, int nearer_penalty,
+                     int large_penalty) const {
     const int smallest = std::ranges::min(before), count = params_.candidates;
     Costs next(count);
     for (int c = 0; c < count; ++c) {
       int best = std::min(before[c], smallest + large_penalty);
       if (c > 0) best = std::min(best, before[c - 1] + params_.small_penalty);
-      if (c + 1 < count) best = std::min(best, before[c + 1] + params_.small_penalty);
+      if (c + 1 < count) best = std::min(best, before[c + 1] + nearer_penalty);
       next[c] = cost(x, y, c) + best - smallest;
     }
     return next;

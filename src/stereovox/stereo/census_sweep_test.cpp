@@ -23,6 +23,7 @@ SweepParams params_with(int min_disparity_px, int candidates) {
   SweepParams params{.min_disparity_px = min_disparity_px,
                      .candidates = candidates,
                      .small_penalty = 7,
+                     .nearer_penalty = 4,
                      .large_penalty = {}};
   for (int step = 0; step < kPenaltySteps; ++step)
     params.large_penalty[step] = static_cast<std::uint8_t>(8 + 6000 / (step + 30));

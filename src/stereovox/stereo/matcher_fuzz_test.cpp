@@ -57,6 +57,7 @@ CensusSearch random_search(Dice& dice) {
 CensusSgmParams random_sgm(Dice& dice) {
   CensusSgmParams params{.search = random_search(dice)};
   params.smoothness_small = dice.between(0, 100);
+  params.smoothness_nearer = dice.between(0, 100);
   params.smoothness_large = dice.between(params.smoothness_small + 1, 220);
   return params;
 }

@@ -10,8 +10,6 @@
 
 namespace stereovox {
 
-inline constexpr int kMaxMatchingCost =
-    26;  // the mean of kCensusBits and kMaxSlopeCost, rounded up
 // Sums over windows have 16 bits, which wrap around only above windows of this reach.
 inline constexpr int kMaxArm_px = 24;
 static_assert((2 * kMaxArm_px + 1) * (2 * kMaxArm_px + 1) * kMaxMatchingCost < 1 << 16);
