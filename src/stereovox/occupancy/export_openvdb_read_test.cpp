@@ -1,6 +1,9 @@
 // Grids read back by OpenVDB itself.
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
+#include <unistd.h>
+
+#include <string>
 
 #include "stereovox/core/error.h"
 #include "stereovox/core/grid_geometry.h"
@@ -12,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 openvdb::FloatGrid::Ptr exported(const VoxelMap& map, const QueryParams& params = {}) {
-  const fs::path path = fs::path(testing::TempDir()) / "stereovox_export.vdb";
+  const fs::path path =
+      fs::path(testing::TempDir()) / ("stereovox_export_" + std::to_string(getpid()) + ".vdb");
   export_openvdb(path, map, params);
   openvdb::io::File file(path.string());
   file.open();

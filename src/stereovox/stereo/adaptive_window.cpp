@@ -29,7 +29,7 @@ constexpr std::array<ConfidenceModel, 4> kModels = {
       .local = 0.0259,
       .candidates = 0.437,
       .right = {0.108, 0.186, 0.297, 0.423, 0.679, 0.877, 0.961, 0.982, 0.984, 0.991, 0.994, 0.996},
-      .sigma_px = {0.84, 0.79, 0.75, 0.73, 0.69, 0.55, 0.44, 0.35, 0.28, 0.24, 0.21, 0.18}},
+      .sigma_px = {0.84, 0.80, 0.76, 0.73, 0.70, 0.56, 0.46, 0.37, 0.30, 0.26, 0.23, 0.21}},
      {.bias = 2.393,
       .ratio = 3.911,
       .left_right = 0.655,
@@ -37,7 +37,7 @@ constexpr std::array<ConfidenceModel, 4> kModels = {
       .local = 0.0334,
       .candidates = 0.477,
       .right = {0.073, 0.144, 0.281, 0.479, 0.638, 0.827, 0.943, 0.979, 0.989, 0.993, 0.994, 0.995},
-      .sigma_px = {0.81, 0.75, 0.72, 0.70, 0.65, 0.65, 0.48, 0.34, 0.25, 0.20, 0.19, 0.17}},
+      .sigma_px = {0.81, 0.75, 0.73, 0.71, 0.66, 0.65, 0.49, 0.35, 0.27, 0.22, 0.21, 0.20}},
      {.bias = 2.367,
       .ratio = 4.285,
       .left_right = 0.676,
@@ -45,7 +45,7 @@ constexpr std::array<ConfidenceModel, 4> kModels = {
       .local = 0.0378,
       .candidates = 0.430,
       .right = {0.084, 0.195, 0.292, 0.440, 0.641, 0.848, 0.951, 0.980, 0.988, 0.991, 0.991, 0.994},
-      .sigma_px = {0.82, 0.76, 0.77, 0.74, 0.70, 0.64, 0.48, 0.32, 0.22, 0.19, 0.19, 0.17}},
+      .sigma_px = {0.83, 0.77, 0.78, 0.75, 0.71, 0.65, 0.49, 0.34, 0.24, 0.21, 0.21, 0.20}},
      {.bias = 2.301,
       .ratio = 4.385,
       .left_right = 0.682,
@@ -53,7 +53,7 @@ constexpr std::array<ConfidenceModel, 4> kModels = {
       .local = 0.0375,
       .candidates = 0.438,
       .right = {0.084, 0.184, 0.288, 0.447, 0.644, 0.851, 0.951, 0.980, 0.988, 0.990, 0.991, 0.994},
-      .sigma_px = {0.83, 0.75, 0.78, 0.74, 0.71, 0.64, 0.48, 0.32, 0.22, 0.19, 0.19, 0.17}}}};
+      .sigma_px = {0.83, 0.76, 0.78, 0.74, 0.71, 0.65, 0.49, 0.34, 0.24, 0.21, 0.21, 0.20}}}};
 
 const ConfidenceModel& model_of(WindowSupport support) {
   return kModels[static_cast<std::size_t>(support)];
@@ -105,7 +105,7 @@ std::span<const std::string> names_of(WindowSupport) {
 
 MatchFeatures match_features(const RectifiedPair& pair, const AdaptiveWindowParams& params,
                              int threads) {
-  const CensusPair padded = pad_for_census(pair);
+  const CensusPair padded = pad_for_census(equally_exposed(pair));
   const Arms arms = arms_of(pair.left.pixels, {params.max_arm_px, params.arm_contrast_gray},
                             fastest_window_kernels(), threads);
   MatchFeatures features = features_of_size(pair.left.pixels.size());

@@ -41,6 +41,15 @@ CensusPair pad_for_census(const RectifiedPair& pair) {
           pair.left.height()};
 }
 
+RectifiedPair equally_exposed(const RectifiedPair& pair) {
+  constexpr double kAlike = 1.2;  // what the two see differs by less
+  const double left = cv::mean(pair.left.pixels)[0], right = cv::mean(pair.right.pixels)[0];
+  RectifiedPair equal = pair;
+  if (left > kAlike * right || right > kAlike * left)
+    pair.right.pixels.convertTo(equal.right.pixels, CV_8U, left / std::max(right, 1.0));
+  return equal;
+}
+
 const std::uint8_t* image_row(const cv::Mat1b& padded, int y) {
   return padded.ptr<std::uint8_t>(y + kCensusHalfHeight_px) + kCensusHalfWidth_px;
 }

@@ -17,6 +17,10 @@ struct CensusPair {
 };
 CensusPair pad_for_census(const RectifiedPair& pair);
 
+// The pair with the right image as bright as the left one in the mean, where one camera exposes
+// clearly longer: the census does not mind, but slopes are compared in grey values.
+RectifiedPair equally_exposed(const RectifiedPair& pair);
+
 // The pixel at (0, y) of an image of a CensusPair.
 const std::uint8_t* image_row(const cv::Mat1b& padded, int y);
 

@@ -27,7 +27,7 @@ constexpr ConfidenceModel kModel = {
     .local = 0.0232,
     .candidates = 0.351,
     .right = {0.123, 0.237, 0.342, 0.447, 0.562, 0.790, 0.949, 0.983, 0.987, 0.989, 0.994, 0.994},
-    .sigma_px = {0.78, 0.71, 0.67, 0.67, 0.69, 0.62, 0.47, 0.34, 0.27, 0.21, 0.18, 0.18}};
+    .sigma_px = {0.79, 0.72, 0.68, 0.67, 0.70, 0.63, 0.48, 0.36, 0.28, 0.23, 0.21, 0.21}};
 
 SweepParams sweep_params(const CensusSgmParams& p) {
   if (p.smoothness_large <= p.smoothness_small)
@@ -64,7 +64,7 @@ void sweep_stripe(const CensusPair& pair, const SweepParams& params, int first_r
 MatchFeatures match_features(const RectifiedPair& pair, const CensusSgmParams& params,
                              int threads) {
   const SweepParams sweep = sweep_params(params);
-  const CensusPair padded = pad_for_census(pair);
+  const CensusPair padded = pad_for_census(equally_exposed(pair));
   const int height = padded.height_px;
   const int stripes = std::max(1, height / kStripeHeight_px);
   MatchFeatures features = features_of_size(pair.left.pixels.size());

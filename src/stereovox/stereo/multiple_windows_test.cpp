@@ -76,7 +76,7 @@ TEST(MultipleWindows, TheLargestSumsOfTheLargestWindowsFit) {
   pair.right.pixels.create(size);
   for (int v = 0; v < size.height; ++v)
     for (int u = 0; u < size.width; ++u) {
-      pair.right.pixels(v, u) = static_cast<std::uint8_t>(9 * v + 2 * u);
+      pair.right.pixels(v, u) = static_cast<std::uint8_t>(8 * v + 3 * u);
       pair.left.pixels(v, u) = static_cast<std::uint8_t>(255 - pair.right.pixels(v, u));
     }
   const MultipleWindows windows{.half_px = kMaxWindowHalf_px};
