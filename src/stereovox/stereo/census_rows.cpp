@@ -44,9 +44,10 @@ CensusPair pad_for_census(const RectifiedPair& pair) {
 RectifiedPair equally_exposed(const RectifiedPair& pair) {
   constexpr double kAlike = 1.2;  // what the two see differs by less
   const double left = cv::mean(pair.left.pixels)[0], right = cv::mean(pair.right.pixels)[0];
+  if (left <= kAlike * right && right <= kAlike * left) return pair;
   RectifiedPair equal = pair;
-  if (left > kAlike * right || right > kAlike * left)
-    pair.right.pixels.convertTo(equal.right.pixels, CV_8U, left / std::max(right, 1.0));
+  equal.right.pixels = cv::Mat1b();  // would share its memory with that of `pair`
+  pair.right.pixels.convertTo(equal.right.pixels, CV_8U, left / std::max(right, 1.0));
   return equal;
 }
 
