@@ -46,8 +46,10 @@ RectifiedPair equally_exposed(const RectifiedPair& pair) {
   const double left = cv::mean(pair.left.pixels)[0], right = cv::mean(pair.right.pixels)[0];
   if (left <= kAlike * right && right <= kAlike * left) return pair;
   RectifiedPair equal = pair;
-  equal.right.pixels = cv::Mat1b();  // would share its memory with that of `pair`
-  pair.right.pixels.convertTo(equal.right.pixels, CV_8U, left / std::max(right, 1.0));
+  cv::Mat1b& darker = left < right ? equal.left.pixels : equal.right.pixels;
+  cv::Mat1b brightened;  // `darker` shares its memory with the image of the caller
+  darker.convertTo(brightened, CV_8U, std::max(left, right) / std::max(std::min(left, right), 1.0));
+  darker = brightened;
   return equal;
 }
 

@@ -17,7 +17,7 @@ struct CensusPair {
 };
 CensusPair pad_for_census(const RectifiedPair& pair);
 
-// The pair with the right image as bright as the left one in the mean, where one camera exposes
+// The pair with the darker image as bright as the other one in the mean, where one camera exposes
 // clearly longer: the census does not mind, but slopes are compared in grey values.
 RectifiedPair equally_exposed(const RectifiedPair& pair);
 

@@ -9,6 +9,7 @@
 #include <functional>
 #include <opencv2/imgproc.hpp>
 
+#include "stereovox/stereo/census_rows.h"
 #include "stereovox/stereo/synthetic_pair_for_test.h"
 
 namespace stereovox {
@@ -99,6 +100,22 @@ TEST(CensusSgm, TheEdgesOfAMirrorAreWhereItIs) {
     }
   EXPECT_GT(edge, 1000);
   EXPECT_GT(right, edge / 2);
+}
+
+TEST(EquallyExposed, BrightensTheDarkerImageAndLeavesThoseOfTheCallerAlone) {
+  for (const double left : {1.0, 0.4}) {
+    const double right = 1.4 - left;
+    RectifiedPair pair = synthetic_pair(kSize, [](int, int) { return 5.0; });
+    pair.left.pixels = pair.left.pixels * left;
+    pair.right.pixels = pair.right.pixels * right;
+    const cv::Mat1b left_before = pair.left.pixels.clone(),
+                    right_before = pair.right.pixels.clone();
+    const RectifiedPair equal = equally_exposed(pair);
+    EXPECT_NEAR(cv::mean(equal.left.pixels)[0], cv::mean(equal.right.pixels)[0], 1.0);
+    EXPECT_GT(cv::mean(equal.left.pixels)[0] + 1.0, cv::mean(left_before)[0]);
+    EXPECT_EQ(cv::norm(pair.left.pixels, left_before, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(pair.right.pixels, right_before, cv::NORM_INF), 0.0);
+  }
 }
 
 }  // namespace
