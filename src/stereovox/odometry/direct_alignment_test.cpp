@@ -4,30 +4,23 @@
 
 #include <vector>
 
-#include "stereovox/odometry/image_levels.h"
-#include "stereovox/odometry/room_for_test.h"
+#include "stereovox/odometry/halved_levels_for_test.h"
 
 namespace stereovox {
 namespace {
 
 constexpr Paint kClouds{.plain_from_x_m = -1e9};
-constexpr int kHalvings = 3;
 
 struct Levels {
   std::vector<RectifiedCamera> cameras;
   std::vector<SurfaceLevel> surfaces;
 };
 
-// Halved once, twice, ...
 Levels levels_of(const Shot& shot) {
   Levels levels;
-  RectifiedCamera camera = kCamera;
-  PairLevel images{shot.pair, shot.disparity};
-  for (int i = 0; i < kHalvings; ++i) {
-    camera = halved(camera);
-    images = halved(images);
-    levels.cameras.push_back(camera);
-    levels.surfaces.push_back({detail_of(images.pair), images.disparity.disparity_px});
+  for (const HalvedLevel& level : halved_levels_of(shot)) {
+    levels.cameras.push_back(level.camera);
+    levels.surfaces.push_back({detail_of(level.images.pair), level.images.disparity.disparity_px});
   }
   return levels;
 }

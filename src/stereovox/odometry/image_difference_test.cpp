@@ -4,38 +4,19 @@
 
 #include <vector>
 
-#include "stereovox/odometry/room_for_test.h"
+#include "stereovox/odometry/halved_levels_for_test.h"
 
 namespace stereovox {
 namespace {
 
 constexpr Paint kPattern{.period_m = 0.3};
 
-struct Levels {
-  std::vector<RectifiedCamera> cameras;
-  std::vector<PairLevel> images;
-};
-
-// Halved once, twice and three times.
-Levels levels_of(const Shot& shot) {
-  Levels levels;
-  RectifiedCamera camera = kCamera;
-  PairLevel images{shot.pair, shot.disparity};
-  for (int i = 0; i < 3; ++i) {
-    camera = halved(camera);
-    images = halved(images);
-    levels.cameras.push_back(camera);
-    levels.images.push_back(images);
-  }
-  return levels;
-}
-
 double ratio(const Shot& reference, const Shot& current, const SE3& T_reference_a,
              const SE3& T_reference_b) {
-  const Levels r = levels_of(reference), c = levels_of(current);
+  const auto r = halved_levels_of(reference), c = halved_levels_of(current);
   std::vector<ViewPair> views;
-  for (std::size_t i = 0; i < r.images.size(); ++i)
-    views.push_back({r.cameras[i], r.images[i], c.images[i]});
+  for (std::size_t i = 0; i < r.size(); ++i)
+    views.push_back({r[i].camera, r[i].images, c[i].images});
   return difference_ratio(views, T_reference_a, T_reference_b);
 }
 
