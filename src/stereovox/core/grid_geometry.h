@@ -30,11 +30,13 @@ inline Eigen::Vector2d center_of(const GridGeometry& grid, const Eigen::Vector2i
 }
 
 // The largest integer that is not larger. Without SSE 4.1 std::floor is a call, which takes longer
-// than all else that finding a voxel takes.
+// than all else that finding a voxel takes. Values beyond int end at one of its ends: wrapping
+// around there saves a second condition, with which look-ups of voxels wait for each other's
+// memory.
 inline int floor_to_int(double value) {
   const int towards_zero = static_cast<int>(value);
-  const bool is_above = towards_zero > value && towards_zero > std::numeric_limits<int>::min();
-  return towards_zero - (is_above ? 1 : 0);
+  return static_cast<int>(static_cast<unsigned>(towards_zero) -
+                          static_cast<unsigned>(towards_zero > value));
 }
 
 // Voxels of the unbounded 3D lattice through the world's origin.

@@ -51,6 +51,13 @@ inline std::uint64_t block_key(const Eigen::Vector3i& block) {
          static_cast<std::uint64_t>(block.z() + kOffset);
 }
 
+// Multiplying by 2^64 / golden ratio spreads neighbouring keys upwards; so that x, the highest part
+// of a key, is spread as well, it is first laid over the lower ones.
+inline std::size_t hash_of(std::uint64_t key) {
+  constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15ULL;
+  return static_cast<std::size_t>(((key ^ key >> 32) * kGolden) >> 32);
+}
+
 // Numbers blocks 0, 1, 2, ... in the order in which they are first seen. Open addressing, at most
 // half full. Coordinates must lie within +-kMaxBlockCoordinate.
 class BlockIndex {
@@ -70,11 +77,6 @@ class BlockIndex {
     int number = kNone;
   };
 
-  // Multiplying by 2^64 / golden ratio spreads neighbouring keys; the high bits are the mixed ones.
-  static std::size_t hash_of(std::uint64_t key) {
-    constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15ULL;
-    return static_cast<std::size_t>((key * kGolden) >> 32);
-  }
   std::size_t slot_of(std::uint64_t key) const {
     const std::size_t mask = slots_.size() - 1;
     std::size_t slot = hash_of(key) & mask;

@@ -68,12 +68,12 @@ VoxelMap& VoxelMap::operator=(const VoxelMap& other) {
 // ---- changing
 
 VoxelTile& VoxelMap::find_or_create_tile(const Eigen::Vector3i& block_index) {
-  const auto number = static_cast<std::size_t>(index_.find_or_insert(tile_of(block_index)));
-  if (number == tiles_.size()) {
-    tiles_.push_back(std::make_unique<VoxelTile>());
-    tiles_.back()->index = tile_of(block_index);
-  }
-  return *tiles_[number];
+  VoxelTile& found = table_.find(tile_of(block_index));
+  if (TileTable::is_there(found)) return found;
+  VoxelTile& created = *tiles_.emplace_back(std::make_unique<VoxelTile>());
+  created.index = tile_of(block_index);
+  table_.insert(created);
+  return created;
 }
 
 VoxelBlock& VoxelMap::find_or_create_block(const Eigen::Vector3i& block_index) {
@@ -97,7 +97,7 @@ void VoxelMap::set(const Eigen::Vector3i& index, const Voxel& voxel) {
 
 void VoxelMap::erase_block(const Eigen::Vector3i& block_index) {
   if (find_block(block_index) == nullptr) return;
-  VoxelTile& tile = *find_tile(block_index);
+  VoxelTile& tile = table_.find(tile_of(block_index));
   tile.blocks[position_in_tile(block_index)].reset();
   --block_count_;
   mark_changed(tile, position_in_tile(block_index));
@@ -169,8 +169,9 @@ std::vector<VoxelTile*> VoxelMap::tiles_in(const VoxelBounds& box) const {
   for (int x = low.x(); x <= high.x(); ++x)
     for (int y = low.y(); y <= high.y(); ++y)
       for (int z = low.z(); z <= high.z(); ++z)
-        if (VoxelTile* const tile = find_tile({x * kTileSide, y * kTileSide, z * kTileSide}))
-          inside.push_back(tile);
+        if (is_within_reach({x * kTileSide, y * kTileSide, z * kTileSide}))
+          if (VoxelTile& tile = table_.find({x, y, z}); TileTable::is_there(tile))
+            inside.push_back(&tile);
   return inside;
 }
 
@@ -218,7 +219,7 @@ void VoxelMap::measure(VoxelTile& tile) const {
 std::size_t VoxelMap::memory_bytes() const {
   for (VoxelTile* const tile : unmeasured_) measure(*tile);
   unmeasured_.clear();
-  return measured_bytes_ + tiles_.size() * sizeof(VoxelTile) + index_.memory_bytes();
+  return measured_bytes_ + tiles_.size() * sizeof(VoxelTile) + table_.memory_bytes();
 }
 
 void VoxelMap::use_store(const std::filesystem::path& folder) {

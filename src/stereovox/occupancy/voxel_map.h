@@ -24,7 +24,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stereovox/occupancy/voxel_tile.h"
+#include "stereovox/occupancy/tile_table.h"
 
 namespace stereovox {
 
@@ -68,11 +68,10 @@ class VoxelMap {
   // The block counts as changed. Ask again before a later change.
   VoxelBlock& find_or_create_block(const Eigen::Vector3i& block_index);
   const VoxelBlock* find_block(const Eigen::Vector3i& block_index) const {
-    VoxelTile* const tile = find_tile(block_index);
-    if (tile == nullptr) return nullptr;
-    const auto& block = tile->blocks[position_in_tile(block_index)];
-    if (block == nullptr && tile->is_out) bring_back(*tile);
-    return block.get();
+    if (!is_within_reach(block_index)) return nullptr;
+    VoxelTile& tile = table_.find(tile_of(block_index));
+    if (tile.is_out) bring_back(tile);
+    return tile.blocks[position_in_tile(block_index)].get();
   }
   void erase_block(const Eigen::Vector3i& block_index);
 
@@ -123,11 +122,6 @@ class VoxelMap {
   std::map<std::string, std::string> attachments;
 
  private:
-  VoxelTile* find_tile(const Eigen::Vector3i& block_index) const {
-    if (!is_within_reach(block_index)) return nullptr;
-    const int number = index_.find(tile_of(block_index));
-    return number == BlockIndex::kNone ? nullptr : tiles_[static_cast<std::size_t>(number)].get();
-  }
   static bool is_within_reach(const Eigen::Vector3i& block) {
     constexpr auto kReach = static_cast<unsigned>(kMaxBlockCoordinate);
     const auto is_near = [](int c) { return static_cast<unsigned>(c) + kReach <= 2 * kReach; };
@@ -145,7 +139,7 @@ class VoxelMap {
   void measure(VoxelTile& tile) const;
 
   double voxel_size_m_, floor_z_m_;
-  BlockIndex index_;  // of tiles
+  TileTable table_;
   std::vector<std::unique_ptr<VoxelTile>> tiles_;
   std::size_t block_count_ = 0;
   ChangeStamp changes_ = 0;

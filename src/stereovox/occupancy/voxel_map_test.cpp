@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
 
 #include "stereovox/core/error.h"
 
@@ -33,6 +34,32 @@ TEST(BlockIndex, FindsWhatWasInsertedAndNothingElse) {
   for (int i = 0; i < 3000; ++i) EXPECT_EQ(index.find(blocks[std::size_t(i)]), i);
   EXPECT_EQ(index.find({1, 2, 3}), BlockIndex::kNone);
   EXPECT_EQ(BlockIndex{}.find({1, 2, 3}), BlockIndex::kNone);
+}
+
+// Searches are short only if neighbours along every axis begin at different slots.
+TEST(BlockIndex, SpreadsNeighboursAlongEveryAxis) {
+  constexpr int kSide = 8;
+  constexpr std::size_t kSlots = 4096;
+  std::set<std::size_t> slots;
+  for (int i = 0; i < kSide * kSide * kSide; ++i)
+    slots.insert(hash_of(block_key({i % kSide, i / kSide % kSide, i / (kSide * kSide)})) % kSlots);
+  // Thrown at random, 512 keys would take 481 slots.
+  EXPECT_GT(slots.size(), 450U);
+}
+
+TEST(TileTable, FindsWhatWasInsertedAndNothingElse) {
+  std::mt19937 random(4);
+  std::uniform_int_distribution<int> coordinate(-kMaxBlockCoordinate, kMaxBlockCoordinate);
+  TileTable table;
+  std::vector<VoxelTile> tiles(500);
+  for (VoxelTile& tile : tiles) {
+    tile.index = {coordinate(random), coordinate(random), coordinate(random)};
+    EXPECT_FALSE(TileTable::is_there(table.find(tile.index)));
+    table.insert(tile);
+  }
+  for (VoxelTile& tile : tiles) EXPECT_EQ(&table.find(tile.index), &tile);
+  EXPECT_FALSE(TileTable::is_there(table.find({1, 2, 3})));
+  EXPECT_EQ(table.find({1, 2, 3}).blocks[0], nullptr);
 }
 
 TEST(VoxelMap, KnowsNothingAtFirst) {
