@@ -45,6 +45,7 @@ struct NavmapParams {
   LabelRule label_rule = LabelRule::visible;
   double wall_contrast = 1.0;
   double sure_state = 0.0;
+  double face_bias_m = 0.01;
   HiddenCells hidden_cells = HiddenCells::keep;
 
   // Whether the layers of cells before obstacles are looked at (thin_walls.h).

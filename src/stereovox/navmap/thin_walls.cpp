@@ -1,6 +1,7 @@
 #include "stereovox/navmap/thin_walls.h"
 
 #include <array>
+#include <cmath>
 
 #include "stereovox/core/grid_geometry.h"
 
@@ -25,6 +26,16 @@ bool is_front(const OccupancyGrid2D& map, const Front& front) {
          map.label_at(before) == CellLabel::free && map.label_at(behind) == CellLabel::occupied;
 }
 
+// `reach_m`: how far the surface reaches into the cell.
+CellLabel label_by_face(CellLabel label, double state, double reach_m, const NavmapParams& params) {
+  const bool is_occupied = label == CellLabel::occupied;
+  const bool is_doubtful = is_occupied ? state < params.sure_state : state > kMinReachedState;
+  if (!is_doubtful) return label;
+  if (std::abs(reach_m) < params.face_bias_m) return CellLabel::unknown;
+  if (reach_m > 0.0) return CellLabel::occupied;
+  return is_occupied ? CellLabel::free : label;
+}
+
 CellLabel label_of(const OccupancyGrid2D& map, const Front& front, const WallFaces& faces,
                    const NavmapParams& params) {
   const CellLabel label = map.label_at(front.cell);
@@ -32,13 +43,10 @@ CellLabel label_of(const OccupancyGrid2D& map, const Front& front, const WallFac
   const Eigen::Vector2i first_cell =
       (map.geometry.origin_m / map.geometry.cell_size_m).array().round().cast<int>();
   const auto reach_m = faces.reach_m(first_cell + front.cell, front.step);
-  if (label == CellLabel::occupied) {
-    const double behind = map.states[map.position_of(front.cell - front.step)];
-    const bool is_spread = reach_m ? *reach_m < 0.0 && state < params.sure_state
-                                   : behind > state + params.wall_contrast;
-    return is_spread ? CellLabel::free : label;
-  }
-  return reach_m && *reach_m > 0.0 && state > kMinReachedState ? CellLabel::occupied : label;
+  if (reach_m) return label_by_face(label, state, *reach_m, params);
+  const double behind = map.states[map.position_of(front.cell - front.step)];
+  const bool is_spread = label == CellLabel::occupied && behind > state + params.wall_contrast;
+  return is_spread ? CellLabel::free : label;
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ namespace stereovox {
 // Looks at each cell between a free cell and, on the opposite side, an occupied one. Where the mean
 // of the surface's points, seen from the free side, is known (WallFaces::reach_m):
 //   an occupied cell that they do not reach becomes free, unless its state is params.sure_state or
-//   more; another cell that they reach becomes occupied.
+//   more; another cell that they reach becomes occupied;
+//   where the mean is within params.face_bias_m of the border, such a cell becomes unknown.
 // Elsewhere an occupied cell becomes free when the state behind it is higher by more than
 // params.wall_contrast: what was measured in it is the error of the surface behind. A cell that is
 // really filled is nearer to those who look and collects more evidence than the one behind it.

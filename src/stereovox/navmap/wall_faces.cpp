@@ -14,8 +14,6 @@ namespace stereovox {
 namespace {
 
 constexpr std::string_view kMagic = "wall faces 1\n";
-// What does not average out of a range: bias of matcher and calibration.
-constexpr double kBias_m = 0.01;
 // With less the mean is not known to 3 mm, the bias aside.
 constexpr float kMinInformation_per_m2 = 1e5F;
 // With more, the newest points count as if there were only so many older ones.
@@ -54,13 +52,13 @@ void WallFaces::observe(const FrameView& frame, double floor_z_m, const NavmapPa
       const auto point = measure_pixel(frame, u, v);
       if (point && band.contains(point->p_world.z()) && marks_surface(frame, *point) &&
           is_exact(frame, *point))
-        add(*point, frame.params.voxel_size_m);
+        add(*point, frame.params.voxel_size_m, params.face_bias_m);
     }
 }
 
 // To the nearest border along each axis.
-void WallFaces::add(const PointMeasurement& point, double cell_size_m) {
-  const double weight = 1.0 / (point.sigma_range_m * point.sigma_range_m + kBias_m * kBias_m);
+void WallFaces::add(const PointMeasurement& point, double cell_size_m, double bias_m) {
+  const double weight = 1.0 / (point.sigma_range_m * point.sigma_range_m + bias_m * bias_m);
   const Eigen::Vector2d place = point.p_world.head<2>() / cell_size_m;
   for (int axis = 0; axis < 2; ++axis) {
     Eigen::Vector2i cell = place.array().floor().cast<int>();

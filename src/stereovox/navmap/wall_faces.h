@@ -59,7 +59,7 @@ class WallFaces {
                                     (is_from_above ? 1 : 0));
   }
 
-  void add(const PointMeasurement& point, double cell_size_m);
+  void add(const PointMeasurement& point, double cell_size_m, double bias_m);
 
   std::map<TileIndex, Tile> tiles_;
 };
