@@ -55,8 +55,8 @@ class WallFaces {
   using Tile = std::array<WallFace, kCellsPerTile * kFacesPerCell>;
 
   static std::size_t place_of(const Eigen::Vector2i& cell, int axis, bool is_from_above) {
-    return static_cast<std::size_t>(position_in_tile(cell) * kFacesPerCell + 2 * axis +
-                                    (is_from_above ? 1 : 0));
+    const int place = position_in_tile(cell) * kFacesPerCell + 2 * axis + (is_from_above ? 1 : 0);
+    return static_cast<std::size_t>(place);
   }
 
   void add(const PointMeasurement& point, double cell_size_m, double bias_m);
