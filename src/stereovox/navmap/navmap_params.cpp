@@ -67,7 +67,8 @@ void NavmapParams::describe(ParameterList& list) {
        "a cell before an obstacle with a smaller state is as free or occupied as the mean place of "
        "the surface's points says; 0 = the contrast decides");
   list("face_bias_m", face_bias_m, {0.001, 1},
-       "what does not average out of that mean; where it decides by less, the cell is unknown");
+       "what does not average out of that mean; a cell before a border it is behind by less is "
+       "unknown");
   list("hidden_cells", hidden_cells,
        "free space apart from the robot's, and obstacles that touch no free space");
 }

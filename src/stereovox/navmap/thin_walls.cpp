@@ -1,7 +1,6 @@
 #include "stereovox/navmap/thin_walls.h"
 
 #include <array>
-#include <cmath>
 
 #include "stereovox/core/grid_geometry.h"
 
@@ -31,8 +30,8 @@ CellLabel label_by_face(CellLabel label, double state, double reach_m, const Nav
   const bool is_occupied = label == CellLabel::occupied;
   const bool is_doubtful = is_occupied ? state < params.sure_state : state > kMinReachedState;
   if (!is_doubtful) return label;
-  if (std::abs(reach_m) < params.face_bias_m) return CellLabel::unknown;
   if (reach_m > 0.0) return CellLabel::occupied;
+  if (reach_m > -params.face_bias_m) return CellLabel::unknown;
   return is_occupied ? CellLabel::free : label;
 }
 

@@ -12,7 +12,8 @@ namespace stereovox {
 // of the surface's points, seen from the free side, is known (WallFaces::reach_m):
 //   an occupied cell that they do not reach becomes free, unless its state is params.sure_state or
 //   more; another cell that they reach becomes occupied;
-//   where the mean is within params.face_bias_m of the border, such a cell becomes unknown.
+//   where the mean is behind the border by less than params.face_bias_m, such a cell becomes
+//   unknown.
 // Elsewhere an occupied cell becomes free when the state behind it is higher by more than
 // params.wall_contrast: what was measured in it is the error of the surface behind. A cell that is
 // really filled is nearer to those who look and collects more evidence than the one behind it.

@@ -85,8 +85,8 @@ TEST(ThinWalls, ACellThatIsSureStaysAndAnEmptyOneIsNotFilled) {
   EXPECT_EQ(placed("...#", 0.1F, 1.98), (Drawing{"...#"}));
 }
 
-TEST(ThinWalls, NobodyKnowsTheLayerOfAWallAtTheBorder) {
-  EXPECT_EQ(placed("..##", 0.6F, 1.995), (Drawing{"..?#"}));
+TEST(ThinWalls, WhereAWallIsHardlyBehindTheBorderTheCellBeforeItIsNotCalledFree) {
+  EXPECT_EQ(placed("..##", 0.6F, 1.995), (Drawing{"..##"}));
   EXPECT_EQ(placed("..##", 0.6F, 2.005), (Drawing{"..?#"}));
   EXPECT_EQ(placed("...#", 0.4F, 2.005), (Drawing{"..?#"}));
   EXPECT_EQ(placed("..##", 0.8F, 1.995), (Drawing{"..##"}));
