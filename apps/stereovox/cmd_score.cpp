@@ -25,7 +25,7 @@ struct TrajectoryOptions : ScoreOptions {
   std::vector<double> segment_lengths_m;
 };
 
-struct DisparityOptions : ScoreOptions {
+struct DisparityScoreOptions : ScoreOptions {
   std::string mask;
   bool without_occlusions = false;
 };
@@ -47,7 +47,7 @@ ExitCode score(const TrajectoryOptions& options) {
               options.json);
 }
 
-ExitCode score(const DisparityOptions& options) {
+ExitCode score(const DisparityScoreOptions& options) {
   const DisparityImage truth = read_disparity(options.truth);
   cv::Mat1b counted;
   if (!options.mask.empty()) counted = read_gray_image(options.mask).image.pixels == 255;
@@ -84,7 +84,7 @@ void add_score(CLI::App& program, Action& action) {
                    "segments of KITTI's drift, in metres")
       ->delimiter(',')
       ->type_name("M,M,...");
-  const auto disparity = add_kind<DisparityOptions>(
+  const auto disparity = add_kind<DisparityScoreOptions>(
       *command, "disparity", "two PFM or KITTI PNG files: bad-N, D1, MAE, density", action);
   CLI::Option* const mask =
       command->get_subcommand("disparity")
