@@ -40,6 +40,7 @@ using Square = Eigen::Matrix<double, kFeatures, kFeatures>;
 struct Sample {
   Row features;
   double error_px;
+  bool passes;  // all other checks of the matcher
 
   bool is_right() const { return std::abs(error_px) <= kRightWithin_px; }
 };
@@ -51,20 +52,26 @@ Row row_of(const PixelFeatures& f, int candidates) {
   return row;
 }
 
+struct Found {
+  MatchFeatures features;
+  DisparityImage passed;  // what is left of them, with its edges settled
+};
+
 // What the matcher finds among this number of disparities.
-using FindFeatures = std::function<MatchFeatures(const RectifiedPair&, int disparity_range_px)>;
+using FindMatches = std::function<Found(const RectifiedPair&, int disparity_range_px)>;
 
 template <class Params>
-FindFeatures finder_with(const Params& params) {
+FindMatches finder_with(const Params& params) {
   return [params](const RectifiedPair& pair, int disparity_range_px) {
     Params wide = params;
     wide.search.disparity_range_px = disparity_range_px;
-    return match_features(pair, wide, 1);
+    wide.search.min_confidence = 0;
+    return Found{match_features(pair, wide, 1), match(pair, wide, 1)};
   };
 }
 
 // The name of a matcher, or of a support of adaptive_window.
-FindFeatures finder_of(const std::string& matcher) {
+FindMatches finder_of(const std::string& matcher) {
   if (matcher == CensusSgmParams::kName) return finder_with(CensusSgmParams{});
   if (matcher == AdaptiveWindowParams::kName) return finder_with(AdaptiveWindowParams{});
   const auto supports = names_of(WindowSupport{});
@@ -76,9 +83,9 @@ FindFeatures finder_of(const std::string& matcher) {
 }
 
 // Where there is no true disparity there is no sample; what is infinite nothing can match.
-void add_samples(const FindFeatures& find, const RectifiedPair& pair, const cv::Mat1f& truth_px,
+void add_samples(const FindMatches& find, const RectifiedPair& pair, const cv::Mat1f& truth_px,
                  int disparity_range_px, int count, std::vector<Sample>& samples) {
-  const MatchFeatures f = find(pair, disparity_range_px);
+  const auto [f, passed] = find(pair, disparity_range_px);
   CensusSearch search;
   search.disparity_range_px = disparity_range_px;
   cv::Mat1f variance_px2(truth_px.size());
@@ -86,14 +93,16 @@ void add_samples(const FindFeatures& find, const RectifiedPair& pair, const cv::
   const int step = std::max(1, static_cast<int>(truth_px.total()) / count);
   for (int i = 0; i < static_cast<int>(truth_px.total()); i += step) {
     const int v = i / truth_px.cols, u = i % truth_px.cols;
-    const double found_px = static_cast<double>(f.disparity(v, u)) / kStepsPerPixel;
+    const bool passes = passed.disparity_px(v, u) > 0.0F;
+    const double raw_px = static_cast<double>(f.disparity(v, u)) / kStepsPerPixel;
+    const double found_px = passes ? passed.disparity_px(v, u) : raw_px;
     if (!(truth_px(v, u) > 0.0F) || found_px > u) continue;
     samples.push_back({row_of(features_at(f, v, u, variance_px2(v, u)), search.candidates()),
-                       found_px - truth_px(v, u)});
+                       found_px - truth_px(v, u), passes});
   }
 }
 
-void add_pair(const FindFeatures& find, const std::string& folder, std::vector<Sample>& samples) {
+void add_pair(const FindMatches& find, const std::string& folder, std::vector<Sample>& samples) {
   RectifiedPair pair;
   pair.left = read_gray_image(folder + "/left.png").image;
   pair.right = read_gray_image(folder + "/right.png").image;
@@ -108,7 +117,7 @@ void add_pair(const FindFeatures& find, const std::string& folder, std::vector<S
 }
 
 // Independent noise of `levels` grey values in both images, as fine as pixels or coarser.
-void add_noise(const FindFeatures& find, int levels, double blur_px, std::vector<Sample>& samples) {
+void add_noise(const FindMatches& find, int levels, double blur_px, std::vector<Sample>& samples) {
   constexpr int kSamplesOfNoise = 2000;
   const cv::Size size(320, 240);
   cv::RNG random(static_cast<std::uint64_t>(levels));
@@ -141,11 +150,12 @@ Row fit(const std::vector<Sample>& samples) {
 }
 
 struct Bin {
-  int count = 0, right = 0;
-  double squared_px2 = 0;
+  int count = 0, right = 0;  // of those that pass
+  int all_right = 0;         // whether they pass or not: this is on the safe side
+  double squared_px2 = 0;    // sum of their errors
 };
 
-// The pairs alone: noise says nothing about how often scenes are right.
+// Of the pairs alone: noise says nothing about how often scenes are right.
 std::vector<Bin> bins_of(std::span<const Sample> samples, const Row& weights) {
   constexpr double kSpan = ConfidenceModel::kMaxLogit - ConfidenceModel::kMinLogit;
   std::vector<Bin> bins(ConfidenceModel::kBins);
@@ -153,11 +163,40 @@ std::vector<Bin> bins_of(std::span<const Sample> samples, const Row& weights) {
     const double place = (weights.dot(s.features) - ConfidenceModel::kMinLogit) / kSpan;
     const int i = static_cast<int>(place * ConfidenceModel::kBins);
     Bin& bin = bins[static_cast<std::size_t>(std::clamp(i, 0, ConfidenceModel::kBins - 1))];
-    ++bin.count;
-    bin.right += s.is_right() ? 1 : 0;
+    bin.count += s.passes ? 1 : 0;
+    bin.right += s.passes && s.is_right() ? 1 : 0;
+    bin.all_right += s.is_right() ? 1 : 0;
     bin.squared_px2 += s.is_right() ? s.error_px * s.error_px : 0.0;
   }
   return bins;
+}
+
+double right_share(const Bin& bin) {
+  return static_cast<double>(bin.right) / std::max(bin.count, 1);
+}
+
+// Who is surer is not less often right: neighbours that contradict this become one bin, as do those
+// without samples.
+std::vector<Bin> pooled(const std::vector<Bin>& bins) {
+  struct Pool {
+    Bin sum;
+    std::size_t bins;
+  };
+  std::vector<Pool> pools;
+  for (const Bin& bin : bins) {
+    pools.push_back({bin, 1});
+    while (pools.size() > 1 && right_share(pools.back().sum) < right_share(pools.rbegin()[1].sum)) {
+      const Pool last = pools.back();
+      pools.pop_back();
+      Bin& sum = pools.back().sum;
+      sum = {sum.count + last.sum.count, sum.right + last.sum.right,
+             sum.all_right + last.sum.all_right, sum.squared_px2 + last.sum.squared_px2};
+      pools.back().bins += last.bins;
+    }
+  }
+  std::vector<Bin> out;
+  for (const Pool& pool : pools) out.insert(out.end(), pool.bins, pool.sum);
+  return out;
 }
 
 void print(const std::vector<Bin>& bins, const Row& w) {
@@ -167,21 +206,20 @@ void print(const std::vector<Bin>& bins, const Row& w) {
       w[0], w[1], w[2], w[3], w[4], w[5]);
   for (const Bin& bin : bins)
     std::cout << fmt::format(
-        "right {:.3f}, sigma {:.2f} px, {} samples\n",
-        static_cast<double>(bin.right) / std::max(bin.count, 1),
-        std::hypot(std::sqrt(bin.squared_px2 / std::max(bin.right, 1)), kRectification_px),
+        "right {:.3f}, sigma {:.2f} px, {} samples\n", right_share(bin),
+        std::hypot(std::sqrt(bin.squared_px2 / std::max(bin.all_right, 1)), kRectification_px),
         bin.count);
 }
 
 void run(const std::string& matcher, const std::vector<std::string>& folders) {
-  const FindFeatures find = finder_of(matcher);
+  const FindMatches find = finder_of(matcher);
   std::vector<Sample> samples;
   for (const std::string& folder : folders) add_pair(find, folder, samples);
   const std::size_t of_pairs = samples.size();
   for (const int levels : {2, 4, 8, 32, 256})
     for (const double blur_px : {0.0, 0.8, 1.5}) add_noise(find, levels, blur_px, samples);
   const Row weights = fit(samples);
-  print(bins_of(std::span(samples).first(of_pairs), weights), weights);
+  print(pooled(bins_of(std::span(samples).first(of_pairs), weights)), weights);
 }
 
 }  // namespace

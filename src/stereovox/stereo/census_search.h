@@ -13,8 +13,9 @@ struct CensusSearch {
   int left_right_tolerance_px = 3;
   int speckle_size_px = 100;
   int speckle_range_px = 2;
-  double min_confidence = 0.25;
+  double min_confidence = 0.62;
   double island_confidence = 0.96;
+  int edge_likeness_gray = 48;
 
   int candidates() const {
     return (disparity_range_px + kCandidateStep - 1) / kCandidateStep * kCandidateStep;
@@ -37,6 +38,9 @@ struct CensusSearch {
          "disparities that are less probably within 2 px are removed");
     list("island_confidence", island_confidence, {0, 1},
          "what the pixels of an island are counted by: noise gives islands, but no sure ones");
+    list(
+        "edge_likeness_gray", edge_likeness_gray, {0, 255},
+        "at edges disparities are medians of neighbours that differ by less in brightness; 0: not");
   }
 };
 

@@ -17,17 +17,16 @@ namespace {
 constexpr int kStripeHeight_px = 120;
 constexpr int kWarmUpRows = 12;
 
-// Fitted by scripts/fit_confidence to cones, motorcycle and six frames of a rendered room. The last
-// bin, which too few samples reach, has the numbers of the one before.
+// Fitted by scripts/fit_confidence to cones, motorcycle and six frames of a rendered room.
 constexpr ConfidenceModel kModel = {
-    .bias = 2.113,
-    .ratio = 1.770,
-    .left_right = 0.341,
-    .variance = 0.494,
-    .local = 0.0232,
-    .candidates = 0.351,
-    .right = {0.123, 0.237, 0.342, 0.447, 0.562, 0.790, 0.949, 0.983, 0.987, 0.989, 0.994, 0.994},
-    .sigma_px = {0.79, 0.72, 0.68, 0.67, 0.70, 0.63, 0.48, 0.36, 0.28, 0.23, 0.21, 0.21}};
+    .bias = 2.149,
+    .ratio = 1.732,
+    .left_right = 0.352,
+    .variance = 0.488,
+    .local = 0.0229,
+    .candidates = 0.365,
+    .right = {0.597, 0.628, 0.642, 0.674, 0.692, 0.820, 0.952, 0.983, 0.987, 0.989, 0.994, 0.994},
+    .sigma_px = {0.80, 0.68, 0.63, 0.64, 0.68, 0.59, 0.44, 0.34, 0.28, 0.23, 0.21, 0.21}};
 
 SweepParams sweep_params(const CensusSgmParams& p) {
   if (p.smoothness_large <= p.smoothness_small)

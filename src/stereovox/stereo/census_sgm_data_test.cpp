@@ -25,8 +25,8 @@ struct LeftOutPair {
 class ConfidenceOfCensusSgm : public testing::TestWithParam<LeftOutPair> {};
 
 INSTANTIATE_TEST_SUITE_P(LeftOut, ConfidenceOfCensusSgm,
-                         testing::Values(LeftOutPair{"teddy", 64, 0.03},
-                                         LeftOutPair{"aloe_full", 224, 0.03}),
+                         testing::Values(LeftOutPair{"teddy", 64, 0.01},
+                                         LeftOutPair{"aloe_full", 224, 0.02}),
                          [](const auto& pair) { return std::string(pair.param.name); });
 
 std::array<Bin, kBins> bins_of(const DisparityImage& found, const cv::Mat1f& truth_image_px) {

@@ -6,15 +6,24 @@
 #include <limits>
 
 #include "stereovox/core/parallel.h"
+#include "stereovox/stereo/edge_medians.h"
 #include "stereovox/stereo/row_kernels.h"
 #include "stereovox/stereo/speckles.h"
 
 namespace stereovox {
 namespace {
 
-constexpr int kColumnBits = 16;
-constexpr std::uint32_t kColumnMask = (1U << kColumnBits) - 1;
-constexpr std::int16_t kNobodysDisparity = std::numeric_limits<std::int16_t>::max();
+// A right pixel that nobody matches, as if by the largest cost and disparity of all.
+constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+constexpr int kDisparityBits = 16, kSmallestDisparity = std::numeric_limits<std::int16_t>::min();
+
+std::uint32_t owner_with(int cost, int disparity) {
+  return static_cast<std::uint32_t>(cost << kDisparityBits | (disparity - kSmallestDisparity));
+}
+
+int disparity_of(std::uint32_t owner) {
+  return static_cast<std::uint16_t>(owner) + kSmallestDisparity;
+}
 
 // kLogRatioSteps ln(1 + cost).
 const std::array<std::int16_t, 256>& log_of_raised() {
@@ -60,13 +69,21 @@ class Judge {
     const std::uint8_t* const log_ratio = features_.log_ratio[v];
     const std::uint8_t* const left_right = features_.left_right[v];
     const int width = features_.disparity.cols;
-    constexpr int kHalf = kStepsPerPixel / 2;
     for (int u = 0; u < width; ++u) {
-      const bool reaches_in = u * kStepsPerPixel + kHalf > disparity[u];
-      const bool passes = (disparity[u] > 0) & reaches_in & (log_ratio[u] >= min_log_ratio_) &
+      const bool passes = (disparity[u] > 0) & (log_ratio[u] >= min_log_ratio_) &
                           (left_right[u] <= max_left_right_) & (level[u] >= min_level_);
       passed[u] = passes ? disparity[u] : std::int16_t{0};
       is_sure[u] = level[u] >= sure_level_ ? 1 : 0;
+    }
+    keep_seen(v, passed);
+  }
+
+  // Rejects what does not join two recorded pixels.
+  void keep_seen(int v, std::int16_t* passed) const {
+    constexpr int kHalf = kStepsPerPixel / 2;
+    for (int u = 0; u < features_.disparity.cols; ++u) {
+      const bool reaches_in = u * kStepsPerPixel + kHalf > passed[u];
+      passed[u] = reaches_in ? passed[u] : std::int16_t{0};
     }
     if (!pair_.valid_left.empty() || !pair_.valid_right.empty()) keep_recorded(v, passed);
   }
@@ -111,8 +128,7 @@ FeatureRows::FeatureRows(int width_px, int min_disparity_px, int max_disparity_p
       max_disparity_px_(max_disparity_px),
       before_(std::max(0, max_disparity_px) + 1),
       after_(std::max(0, -min_disparity_px) + 1),
-      owner_(before_ + width_px + after_),
-      disparity_(width_px + 1) {}
+      owner_(before_ + width_px + after_) {}
 
 void FeatureRows::fill(const WinnerRow& winners, int v, MatchFeatures& features) {
   fastest_row_kernels().disparities({.candidate = winners.candidate.data(),
@@ -120,41 +136,36 @@ void FeatureRows::fill(const WinnerRow& winners, int v, MatchFeatures& features)
                                      .here = winners.local.data(),
                                      .after = winners.local_after.data()},
                                     width_px_, max_disparity_px_, features.disparity[v]);
-  find_owners(winners);
+  find_owners(winners, features.disparity[v]);
   fill_left_right(winners, features.disparity[v], features.left_right[v]);
   fill_log_ratios(winners, features.log_ratio[v]);
   std::ranges::copy(winners.local, features.local_cost[v]);
 }
 
 // Right pixels beyond the image have no owner, nor have those that nobody matches best.
-void FeatureRows::find_owners(const WinnerRow& winners) {
-  const auto nobody = std::numeric_limits<std::uint32_t>::max() << kColumnBits |
-                      static_cast<std::uint32_t>(width_px_);
-  std::ranges::fill(owner_, nobody);
+void FeatureRows::find_owners(const WinnerRow& winners, const std::int16_t* disparity) {
+  std::ranges::fill(owner_, kNobody);
   std::uint32_t* const owner = owner_.data() + before_ - max_disparity_px_;
   for (int u = 0; u < width_px_; ++u) {
     std::uint32_t& best = owner[u + winners.candidate[u]];
-    best = std::min(best, static_cast<std::uint32_t>(winners.cost[u]) << kColumnBits |
-                              static_cast<std::uint32_t>(u));
+    best = std::min(best, owner_with(winners.cost[u], disparity[u]));
   }
-  std::fill_n(owner_.begin(), before_, nobody);
-  std::fill_n(owner_.rbegin(), after_, nobody);
+  std::fill_n(owner_.begin(), before_, kNobody);
+  std::fill_n(owner_.rbegin(), after_, kNobody);
 }
 
 // A sub-pixel disparity ends between two right pixels; one of them must agree.
 void FeatureRows::fill_left_right(const WinnerRow& winners, const std::int16_t* disparity,
-                                  std::uint8_t* out) {
-  std::copy_n(disparity, width_px_, disparity_.begin());
-  disparity_.back() = kNobodysDisparity;
+                                  std::uint8_t* out) const {
   const std::uint32_t* const owner = owner_.data() + before_ - max_disparity_px_;
-  const auto difference = [&](int u, int there) {
-    return std::abs(disparity[u] - disparity_[owner[there] & kColumnMask]);
-  };
-  for (int u = 0; u < width_px_; ++u) {
-    const int candidate = winners.candidate[u], there = u + candidate;
-    const bool ends_before = disparity[u] > (max_disparity_px_ - candidate) * kStepsPerPixel;
-    const int smallest =
-        std::min(difference(u, there), difference(u, ends_before ? there - 1 : there + 1));
+  const std::uint8_t* const candidates = winners.candidate.data();
+  const int width = width_px_, max_disparity = max_disparity_px_ * kStepsPerPixel;
+  for (int u = 0; u < width; ++u) {
+    const int here = disparity[u], there = u + candidates[u];
+    const int ends_before = here + candidates[u] * kStepsPerPixel > max_disparity ? 1 : 0;
+    const int other = there + 1 - 2 * ends_before;
+    const int smallest = std::min(std::abs(here - disparity_of(owner[there])),
+                                  std::abs(here - disparity_of(owner[other])));
     out[u] = static_cast<std::uint8_t>(std::min(smallest, kMaxLeftRight));
   }
 }
@@ -170,9 +181,12 @@ DisparityImage judge_matches(const RectifiedPair& pair, const MatchFeatures& fea
                [&](int v) { judge.judge_row(v, level[v], passed[v], is_sure[v]); });
   remove_speckles(passed, is_sure, search.speckle_size_px,
                   search.speckle_range_px * kStepsPerPixel);
+  settle_edges(pair.left.pixels, search.edge_likeness_gray, passed, threads);
   DisparityImage out{cv::Mat1f(size), cv::Mat1f(size), cv::Mat1f(size)};
-  parallel_for(0, size.height, threads,
-               [&](int v) { write_row(passed[v], level[v], judge.table(), v, out); });
+  parallel_for(0, size.height, threads, [&](int v) {
+    judge.keep_seen(v, passed[v]);
+    write_row(passed[v], level[v], judge.table(), v, out);
+  });
   return out;
 }
 

@@ -24,14 +24,15 @@ class FeatureRows {
   void fill(const WinnerRow& winners, int v, MatchFeatures& features);
 
  private:
-  void find_owners(const WinnerRow& winners);
-  void fill_left_right(const WinnerRow& winners, const std::int16_t* disparity, std::uint8_t* out);
+  void find_owners(const WinnerRow& winners, const std::int16_t* disparity);
+  void fill_left_right(const WinnerRow& winners, const std::int16_t* disparity,
+                       std::uint8_t* out) const;
 
   const int width_px_, max_disparity_px_;
   const int before_, after_;  // right pixels beyond the image that candidates may reach
-  // Who matches each right pixel best: its cost, and below that its column; the first of equals.
+  // Who matches each right pixel best: its cost, and below that its disparity; the farthest of
+  // equals.
   std::vector<std::uint32_t> owner_;
-  std::vector<std::int16_t> disparity_;  // one more than pixels: what nobody has
 };
 
 // Disparities that pass the checks of `search`, join two recorded pixels and are > 0, with the

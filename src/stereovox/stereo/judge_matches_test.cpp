@@ -143,5 +143,17 @@ TEST_F(JudgedMatches, IslandsWithoutEnoughSurePixelsFail) {
   EXPECT_FALSE(found(6));
 }
 
+TEST_F(JudgedMatches, EdgesAreSettled) {
+  features.disparity(0, 6) = kStepsPerPixel;
+  EXPECT_EQ(judge_matches(pair, features, search, kSure, 1).disparity_px(0, 6), 3.0F);
+}
+
+TEST_F(JudgedMatches, ThatAreSettledOutsideTheRightImageFail) {
+  features.disparity.setTo(4 * kStepsPerPixel);
+  features.disparity(0, 3) = kStepsPerPixel;
+  EXPECT_FALSE(found(3));
+  EXPECT_TRUE(found(4));
+}
+
 }  // namespace
 }  // namespace stereovox

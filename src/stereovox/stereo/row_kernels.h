@@ -14,6 +14,9 @@ inline constexpr int kStepsPerPixel = 32;
 
 // Disparities are averaged over this many pixels either way: see smooth_disparities.h.
 inline constexpr int kSmoothReach_px = 4, kSmoothMembers = 2 * kSmoothReach_px + 1;
+// Medians about edges are those of a square with this side; see edge_medians.h.
+inline constexpr int kMedianReach_px = 3, kMedianSide_px = 2 * kMedianReach_px + 1;
+inline constexpr int kMedianSlack = 32;  // the rows of the square go on for so long
 // The variance of disparities is that of a square with this side.
 inline constexpr int kVarianceSide_px = 5;
 inline constexpr float kMaxVariance_px2 = 400.0F;
@@ -31,6 +34,13 @@ struct LevelRow {
   int max_level = 0;
 };
 
+// The rows about one; the first entry of each lies kMedianReach_px before its first pixel.
+struct MedianRows {
+  const std::int16_t* disparity[kMedianSide_px] = {};
+  const std::uint8_t* gray[kMedianSide_px] = {};
+  int contrast_gray = 0;
+};
+
 // The winners of a row and the local costs of them and their neighbours: see WinnerPointers.
 struct LocalRow {
   const std::uint8_t *candidate = nullptr, *before = nullptr, *here = nullptr, *after = nullptr;
@@ -45,6 +55,8 @@ struct RowKernels {
   using Medians = void (*)(const SortedRows& rows, int width_px, std::int16_t* out);
   // Means over those of kSmoothMembers rows that lie on the surface of the middle one.
   using Means = void (*)(const std::int16_t* const* members, int width_px, std::int16_t* out);
+  // Writes the pixels that change.
+  using EdgeMedians = void (*)(const MedianRows& rows, int width_px, std::int16_t* out);
   // Adds the disparities and their squares; the squares may wrap around.
   using AddMoments = void (*)(const std::int16_t* disparity, int width_px, std::uint32_t* sum,
                               std::uint32_t* square_sum);
@@ -57,6 +69,7 @@ struct RowKernels {
   SortColumns sort_columns = nullptr;
   Medians medians = nullptr;
   Means means = nullptr;
+  EdgeMedians edge_medians = nullptr;
   AddMoments add_moments = nullptr;
   Variances variances = nullptr;
   Levels levels = nullptr;

@@ -93,6 +93,104 @@ void fill_means(const Step* const* members, int width_px, Step* __restrict out) 
   }
 }
 
+// Pixels that lie side by side, or what is true (all bits) or false (0) of each.
+constexpr int kLanes = 16;
+using Lanes = Step __attribute__((vector_size(kLanes * sizeof(Step))));
+using GrayLanes = std::uint8_t __attribute__((vector_size(kLanes)));
+
+template <class Vector, class T>
+[[gnu::always_inline]] inline Vector load(const T* from) {
+  Vector lanes;
+  __builtin_memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+
+[[gnu::always_inline]] inline bool is_any(const Lanes& mask) {
+  std::uint64_t words[sizeof(Lanes) / sizeof(std::uint64_t)], any = 0;
+  __builtin_memcpy(words, &mask, sizeof(words));
+  for (const std::uint64_t word : words) any |= word;
+  return any != 0;
+}
+
+constexpr int kWindow = kMedianSide_px * kMedianSide_px;
+constexpr Step kMinSpan = kStepsPerPixel + kStepsPerPixel / 2;  // of an edge
+constexpr Step kNoStep = 32767;
+
+// The smallest and the largest disparity in the windows about the pixels from `first` on.
+[[gnu::always_inline]] inline void find_spans(const MedianRows& rows, int first, Lanes& low,
+                                              Lanes& high) {
+  Step lowest[2 * kLanes], highest[2 * kLanes];  // of the columns
+  for (int part = 0; part < 2 * kLanes; part += kLanes) {
+    Lanes least = Lanes{} + kNoStep, most = {};
+    for (int k = 0; k < kMedianSide_px; ++k) {
+      const auto d = load<Lanes>(rows.disparity[k] + first + part);
+      const Lanes or_none = d > 0 ? d : Lanes{} + kNoStep;
+      least = or_none < least ? or_none : least;
+      most = d > most ? d : most;
+    }
+    __builtin_memcpy(lowest + part, &least, sizeof(least));
+    __builtin_memcpy(highest + part, &most, sizeof(most));
+  }
+  low = load<Lanes>(lowest), high = load<Lanes>(highest);
+  for (int dx = 1; dx < kMedianSide_px; ++dx) {
+    const auto least = load<Lanes>(lowest + dx), most = load<Lanes>(highest + dx);
+    low = least < low ? least : low;
+    high = most > high ? most : high;
+  }
+}
+
+// Of each of those pixels, the weights in its window, and their sum.
+[[gnu::always_inline]] inline Lanes weigh(const MedianRows& rows, int first,
+                                          Lanes (&weight)[kWindow]) {
+  const auto gray_at = [&](int k, int dx) {
+    return __builtin_convertvector(load<GrayLanes>(rows.gray[k] + first + dx), Lanes);
+  };
+  const Lanes own = gray_at(kMedianReach_px, kMedianReach_px);
+  const Lanes contrast = Lanes{} + static_cast<Step>(rows.contrast_gray);
+  Lanes total = {};
+  Lanes* next = weight;
+  for (int k = 0; k < kMedianSide_px; ++k)
+    for (int dx = 0; dx < kMedianSide_px; ++dx) {
+      const Lanes rise = gray_at(k, dx) - own;
+      const Lanes alike = contrast - (rise > 0 ? rise : -rise);
+      const Lanes counts = (alike > 0) & (load<Lanes>(rows.disparity[k] + first + dx) > 0);
+      total += * next++ = alike & counts;
+    }
+  return total;
+}
+
+// Halves the spans that hold the medians until nothing is left of them.
+[[gnu::always_inline]] inline Lanes find_medians(const MedianRows& rows, int first, Lanes low,
+                                                 Lanes high) {
+  Lanes weight[kWindow];
+  const Lanes total = weigh(rows, first, weight);
+  while (is_any(low < high)) {
+    const Lanes middle = low + ((high - low) >> 1);
+    Lanes below = {};
+    const Lanes* next = weight;
+    for (const std::int16_t* const disparity : rows.disparity)
+      for (int dx = 0; dx < kMedianSide_px; ++dx)
+        below += *next++ & (load<Lanes>(disparity + first + dx) <= middle);
+    const Lanes is_below = below + below >= total;
+    high = is_below ? middle : high;
+    low = is_below ? low : middle + 1;
+  }
+  return low;
+}
+
+void settle_edges(const MedianRows& rows, int width_px, Step* __restrict out) {
+  for (int first = 0; first < width_px; first += kLanes) {
+    Lanes low, high;
+    find_spans(rows, first, low, high);
+    const Step* const own = rows.disparity[kMedianReach_px] + first + kMedianReach_px;
+    const Lanes is_edge = (load<Lanes>(own) > 0) & (high - (low & (high > 0)) > kMinSpan);
+    if (!is_any(is_edge)) continue;
+    const Lanes median = find_medians(rows, first, low & is_edge, high & is_edge);
+    for (int x = 0; x < smaller(kLanes, width_px - first); ++x)
+      out[first + x] = is_edge[x] != 0 ? median[x] : own[x];
+  }
+}
+
 // Variances are summed over steps of this many smaller ones: their squares then fit 32 bits.
 constexpr int kCoarse = 8;
 
@@ -145,6 +243,7 @@ constexpr RowKernels kRowKernels = {.disparities = fill_disparities,
                                     .sort_columns = sort_columns,
                                     .medians = fill_medians,
                                     .means = fill_means,
+                                    .edge_medians = settle_edges,
                                     .add_moments = add_moments,
                                     .variances = fill_variances,
                                     .levels = fill_levels};

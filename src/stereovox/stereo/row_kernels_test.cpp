@@ -62,11 +62,24 @@ std::vector<double> results(const RowKernels& kernels, int width) {
                   .of_variance = -7.7F,
                   .max_level = 254},
                  width, level.data());
+  std::array<std::vector<std::int16_t>, kMedianSide_px> disparities;
+  std::array<std::vector<std::uint8_t>, kMedianSide_px> grays;
+  MedianRows square = {.contrast_gray = 200};
+  const int padded_width = width + 2 * kMedianReach_px + kMedianSlack;
+  for (unsigned i = 0; i < disparities.size(); ++i) {
+    disparities[i] = random_row<std::int16_t>(padded_width, i, -100, 800);
+    grays[i] = random_row<std::uint8_t>(padded_width, i, 0, 255);
+    square.disparity[i] = disparities[i].data();
+    square.gray[i] = grays[i].data();
+  }
+  std::vector<std::int16_t> settled(width);
+  kernels.edge_medians(square, width, settled.data());
   std::vector<double> all;
   const auto append = [&](const auto& row) { all.insert(all.end(), row.begin(), row.end()); };
   append(disparity);
   append(median);
   append(mean);
+  append(settled);
   append(variance_px2);
   append(level);
   return all;
