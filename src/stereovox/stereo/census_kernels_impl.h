@@ -52,8 +52,12 @@ void census_row(const std::uint8_t* const* rows, int width_px, const PixelRow& o
       S::store(out.planes[(k - 1) / 8] + x, plane);
       plane = S::spread(0);
     };
+    // Unrolled, so that each bit is a constant.
+#pragma GCC unroll 3
     for (int dy = -kCensusHalfHeight_px; dy < 0; ++dy)
+#pragma GCC unroll 9
       for (int dx = -kCensusHalfWidth_px; dx <= kCensusHalfWidth_px; ++dx) take(dx, dy);
+#pragma GCC unroll 4
     for (int dx = -kCensusHalfWidth_px; dx < 0; ++dx) take(dx, 0);
     S::store(out.planes[kSlopePlane] + x, slope<S>(rows, x));
   }

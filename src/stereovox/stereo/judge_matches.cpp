@@ -15,14 +15,9 @@ namespace {
 
 // A right pixel that nobody matches, as if by the largest cost and disparity of all.
 constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
-constexpr int kDisparityBits = 16, kSmallestDisparity = std::numeric_limits<std::int16_t>::min();
 
 std::uint32_t owner_with(int cost, int disparity) {
   return static_cast<std::uint32_t>(cost << kDisparityBits | (disparity - kSmallestDisparity));
-}
-
-int disparity_of(std::uint32_t owner) {
-  return static_cast<std::uint16_t>(owner) + kSmallestDisparity;
 }
 
 // kLogRatioSteps ln(1 + cost).
@@ -38,10 +33,10 @@ const std::array<std::int16_t, 256>& log_of_raised() {
 }
 
 void fill_log_ratios(const WinnerRow& winners, std::uint8_t* out) {
-  const std::array<std::int16_t, 256>& log = log_of_raised();
-  for (std::size_t u = 0; u < winners.cost.size(); ++u)
-    out[u] = static_cast<std::uint8_t>(
-        std::clamp(log[winners.second[u]] - log[winners.cost[u]], 0, kMaxLogRatio));
+  const std::int16_t* const log = log_of_raised().data();
+  const std::uint8_t *const cost = winners.cost.data(), *const second = winners.second.data();
+  for (std::size_t u = 0, width = winners.cost.size(); u < width; ++u)
+    out[u] = static_cast<std::uint8_t>(std::clamp(log[second[u]] - log[cost[u]], 0, kMaxLogRatio));
 }
 
 bool is_recorded(const cv::Mat1b& valid, int v, int u) { return valid.empty() || valid(v, u) != 0; }
@@ -137,7 +132,12 @@ void FeatureRows::fill(const WinnerRow& winners, int v, MatchFeatures& features)
                                      .after = winners.local_after.data()},
                                     width_px_, max_disparity_px_, features.disparity[v]);
   find_owners(winners, features.disparity[v]);
-  fill_left_right(winners, features.disparity[v], features.left_right[v]);
+  fastest_row_kernels().left_right({.candidate = winners.candidate.data(),
+                                    .disparity = features.disparity[v],
+                                    .owner = first_owner(),
+                                    .max_disparity_px = max_disparity_px_,
+                                    .max_difference = kMaxLeftRight},
+                                   width_px_, features.left_right[v]);
   fill_log_ratios(winners, features.log_ratio[v]);
   std::ranges::copy(winners.local, features.local_cost[v]);
 }
@@ -145,29 +145,14 @@ void FeatureRows::fill(const WinnerRow& winners, int v, MatchFeatures& features)
 // Right pixels beyond the image have no owner, nor have those that nobody matches best.
 void FeatureRows::find_owners(const WinnerRow& winners, const std::int16_t* disparity) {
   std::ranges::fill(owner_, kNobody);
-  std::uint32_t* const owner = owner_.data() + before_ - max_disparity_px_;
-  for (int u = 0; u < width_px_; ++u) {
-    std::uint32_t& best = owner[u + winners.candidate[u]];
-    best = std::min(best, owner_with(winners.cost[u], disparity[u]));
+  std::uint32_t* const owner = first_owner();
+  const std::uint8_t *const candidate = winners.candidate.data(), *const cost = winners.cost.data();
+  for (int u = 0, width = width_px_; u < width; ++u) {
+    std::uint32_t& best = owner[u + candidate[u]];
+    best = std::min(best, owner_with(cost[u], disparity[u]));
   }
   std::fill_n(owner_.begin(), before_, kNobody);
   std::fill_n(owner_.rbegin(), after_, kNobody);
-}
-
-// A sub-pixel disparity ends between two right pixels; one of them must agree.
-void FeatureRows::fill_left_right(const WinnerRow& winners, const std::int16_t* disparity,
-                                  std::uint8_t* out) const {
-  const std::uint32_t* const owner = owner_.data() + before_ - max_disparity_px_;
-  const std::uint8_t* const candidates = winners.candidate.data();
-  const int width = width_px_, max_disparity = max_disparity_px_ * kStepsPerPixel;
-  for (int u = 0; u < width; ++u) {
-    const int here = disparity[u], there = u + candidates[u];
-    const int ends_before = here + candidates[u] * kStepsPerPixel > max_disparity ? 1 : 0;
-    const int other = there + 1 - 2 * ends_before;
-    const int smallest = std::min(std::abs(here - disparity_of(owner[there])),
-                                  std::abs(here - disparity_of(owner[other])));
-    out[u] = static_cast<std::uint8_t>(std::min(smallest, kMaxLeftRight));
-  }
 }
 
 DisparityImage judge_matches(const RectifiedPair& pair, const MatchFeatures& features,

@@ -25,14 +25,13 @@ class FeatureRows {
 
  private:
   void find_owners(const WinnerRow& winners, const std::int16_t* disparity);
-  void fill_left_right(const WinnerRow& winners, const std::int16_t* disparity,
-                       std::uint8_t* out) const;
+
+  // The owner of the right pixel of candidate 0 of pixel 0.
+  std::uint32_t* first_owner() { return owner_.data() + before_ - max_disparity_px_; }
 
   const int width_px_, max_disparity_px_;
-  const int before_, after_;  // right pixels beyond the image that candidates may reach
-  // Who matches each right pixel best: its cost, and below that its disparity; the farthest of
-  // equals.
-  std::vector<std::uint32_t> owner_;
+  const int before_, after_;          // right pixels beyond the image that candidates may reach
+  std::vector<std::uint32_t> owner_;  // see OwnedRow
 };
 
 // Disparities that pass the checks of `search`, join two recorded pixels and are > 0, with the

@@ -46,10 +46,22 @@ struct LocalRow {
   const std::uint8_t *candidate = nullptr, *before = nullptr, *here = nullptr, *after = nullptr;
 };
 
+// Who matches each right pixel best: its cost, and below that its disparity, counted from the
+// smallest 16 bit hold.
+inline constexpr int kDisparityBits = 16, kSmallestDisparity = -(1 << (kDisparityBits - 1));
+struct OwnedRow {
+  const std::uint8_t* candidate = nullptr;
+  const std::int16_t* disparity = nullptr;
+  const std::uint32_t* owner = nullptr;  // of the right pixel of candidate 0 of pixel 0
+  int max_disparity_px = 0, max_difference = 0;
+};
+
 struct RowKernels {
   // Vertices of the parabolas through the local costs, in steps.
   using Disparities = void (*)(const LocalRow& row, int width_px, int max_disparity_px,
                                std::int16_t* out);
+  // How far disparities are from that of the owner of either right pixel that they end between.
+  using LeftRight = void (*)(const OwnedRow& row, int width_px, std::uint8_t* out);
   using SortColumns = void (*)(const std::int16_t* above, const std::int16_t* here,
                                const std::int16_t* below, int width_px, const SortedRows& out);
   using Medians = void (*)(const SortedRows& rows, int width_px, std::int16_t* out);
@@ -66,6 +78,7 @@ struct RowKernels {
   using Levels = void (*)(const LevelRow& row, int width_px, std::uint8_t* out);
 
   Disparities disparities = nullptr;
+  LeftRight left_right = nullptr;
   SortColumns sort_columns = nullptr;
   Medians medians = nullptr;
   Means means = nullptr;

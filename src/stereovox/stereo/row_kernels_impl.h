@@ -36,6 +36,22 @@ void fill_disparities(const LocalRow& row, int width_px, int max_disparity_px,
   }
 }
 
+void fill_left_right(const OwnedRow& row, int width_px, std::uint8_t* __restrict out) {
+  const OwnedRow r = row;
+  const auto difference = [](int here, std::uint32_t owner) {
+    const int there = static_cast<std::uint16_t>(owner) + kSmallestDisparity;
+    return larger(here - there, there - here);
+  };
+  for (int u = 0; u < width_px; ++u) {
+    const int here = r.disparity[u], there = u + r.candidate[u];
+    const int whole = (r.max_disparity_px - r.candidate[u]) * kStepsPerPixel;
+    const int beside = there + 1 - 2 * static_cast<int>(here > whole);
+    const int smallest =
+        smaller(difference(here, r.owner[there]), difference(here, r.owner[beside]));
+    out[u] = static_cast<std::uint8_t>(smaller(smallest, r.max_difference));
+  }
+}
+
 // The middle one of three.
 [[gnu::always_inline]] inline Step middle(Step a, Step b, Step c) {
   return larger(smaller(a, b), smaller(larger(a, b), c));
@@ -240,6 +256,7 @@ void fill_levels(const LevelRow& row, int width_px, std::uint8_t* __restrict out
 }
 
 constexpr RowKernels kRowKernels = {.disparities = fill_disparities,
+                                    .left_right = fill_left_right,
                                     .sort_columns = sort_columns,
                                     .medians = fill_medians,
                                     .means = fill_means,

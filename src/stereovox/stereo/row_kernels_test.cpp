@@ -35,6 +35,16 @@ std::vector<double> results(const RowKernels& kernels, int width) {
                        .here = bytes[2].data(),
                        .after = bytes[3].data()},
                       width, 300, disparity.data());
+  std::vector<std::uint32_t> owner(width + 300);
+  std::mt19937 random(9);
+  for (std::uint32_t& o : owner) o = static_cast<std::uint32_t>(random() % 20000) + 32768;
+  std::vector<std::uint8_t> left_right(width);
+  kernels.left_right({.candidate = bytes[0].data(),
+                      .disparity = disparity.data(),
+                      .owner = owner.data() + 1,
+                      .max_disparity_px = 300,
+                      .max_difference = 128},
+                     width, left_right.data());
   std::array<std::vector<std::int16_t>, kSmoothMembers> rows;
   std::array<const std::int16_t*, kSmoothMembers> members = {};
   for (unsigned i = 0; i < rows.size(); ++i) {
@@ -77,6 +87,7 @@ std::vector<double> results(const RowKernels& kernels, int width) {
   std::vector<double> all;
   const auto append = [&](const auto& row) { all.insert(all.end(), row.begin(), row.end()); };
   append(disparity);
+  append(left_right);
   append(median);
   append(mean);
   append(settled);
