@@ -170,7 +170,8 @@ constexpr Step kNoStep = 32767;
       const Lanes rise = gray_at(k, dx) - own;
       const Lanes alike = contrast - (rise > 0 ? rise : -rise);
       const Lanes counts = (alike > 0) & (load<Lanes>(rows.disparity[k] + first + dx) > 0);
-      total += * next++ = alike & counts;
+      *next = alike & counts;
+      total += *next++;
     }
   return total;
 }
