@@ -4,6 +4,7 @@
 
 #include "stereovox/stereo/census_kernels.h"
 
+// Each including file is to have its own: NOLINTBEGIN(misc-definitions-in-headers)
 namespace stereovox {
 namespace {
 
@@ -417,3 +418,4 @@ constexpr CensusKernels make_census_kernels() {
 
 }  // namespace
 }  // namespace stereovox
+// NOLINTEND(misc-definitions-in-headers)

@@ -46,14 +46,14 @@ struct LocalRow {
   const std::uint8_t *candidate = nullptr, *before = nullptr, *here = nullptr, *after = nullptr;
 };
 
-// Who matches each right pixel best: its cost, and below that its disparity, counted from the
-// smallest 16 bit hold.
+// What a row of matches is compared with: who matches each right pixel best, as its cost, and below
+// that its disparity, counted from the smallest that 16 bits hold.
 inline constexpr int kDisparityBits = 16, kSmallestDisparity = -(1 << (kDisparityBits - 1));
 struct OwnedRow {
   const std::uint8_t* candidate = nullptr;
   const std::int16_t* disparity = nullptr;
-  const std::uint32_t* owner = nullptr;  // of the right pixel of candidate 0 of pixel 0
-  int max_disparity_px = 0, max_difference = 0;
+  const std::uint32_t* owner = nullptr;          // of the right pixel of candidate 0 of pixel 0
+  int max_disparity_px = 0, max_difference = 0;  // the difference in steps
 };
 
 struct RowKernels {
@@ -67,7 +67,7 @@ struct RowKernels {
   using Medians = void (*)(const SortedRows& rows, int width_px, std::int16_t* out);
   // Means over those of kSmoothMembers rows that lie on the surface of the middle one.
   using Means = void (*)(const std::int16_t* const* members, int width_px, std::int16_t* out);
-  // Writes the pixels that change.
+  // Writes what becomes of pixels at edges; others that it writes stay as they are.
   using EdgeMedians = void (*)(const MedianRows& rows, int width_px, std::int16_t* out);
   // Adds the disparities and their squares; the squares may wrap around.
   using AddMoments = void (*)(const std::int16_t* disparity, int width_px, std::uint32_t* sum,

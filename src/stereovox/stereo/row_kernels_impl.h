@@ -4,6 +4,7 @@
 
 #include "stereovox/stereo/row_kernels.h"
 
+// Each including file is to have its own: NOLINTBEGIN(misc-definitions-in-headers)
 namespace stereovox {
 namespace {
 
@@ -268,3 +269,4 @@ constexpr RowKernels kRowKernels = {.disparities = fill_disparities,
 
 }  // namespace
 }  // namespace stereovox
+// NOLINTEND(misc-definitions-in-headers)

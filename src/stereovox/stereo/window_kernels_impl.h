@@ -5,6 +5,7 @@
 #include "stereovox/stereo/census_kernels_impl.h"
 #include "stereovox/stereo/window_kernels.h"
 
+// Each including file is to have its own: NOLINTBEGIN(misc-definitions-in-headers)
 namespace stereovox {
 namespace {
 
@@ -266,3 +267,4 @@ constexpr WindowKernels make_window_kernels() {
 
 }  // namespace
 }  // namespace stereovox
+// NOLINTEND(misc-definitions-in-headers)
