@@ -46,6 +46,12 @@ struct PenaltyRows {
   std::array<std::uint8_t*, 3> above = {};
 };
 
+struct CostRow {
+  int width_px = 0;
+  PixelRow left, right;          // candidate i of left pixel x is right pixel x + i
+  std::uint8_t* cost = nullptr;  // memory for width x candidates costs
+};
+
 // One row of images that semi-global aggregation has reached, and what it keeps from row to row.
 struct SweepRow {
   int width_px = 0;
@@ -62,18 +68,11 @@ struct SweepRow {
   std::uint8_t* sum = nullptr;   // width x candidates: of path costs, at most 255
 };
 
-// What the best candidate of each pixel of a row is, the first one of equals. The paths from above
-// drag disparities along where a surface leans towards the camera, as floors do. So the winner is
-// chosen anew among the one of the paths and its two neighbours, by the local cost alone: summed
-// over kLocalWidth_px pixels of the row.
+// What the best candidate of each pixel of a row is, the first one of equals.
 struct WinnerPointers {
   std::uint8_t* candidate = nullptr;
   std::uint8_t* cost = nullptr;    // the smallest sum of path costs
   std::uint8_t* second = nullptr;  // the smallest sum of candidates that are not its neighbours
-  // Local costs of the winner and its neighbours; kNoLocalCost where there is no such candidate.
-  std::uint8_t* local_before = nullptr;
-  std::uint8_t* local = nullptr;
-  std::uint8_t* local_after = nullptr;
 };
 
 using RowPair = std::array<SweepRow, 2>;

@@ -188,28 +188,69 @@ template <class S, int N>
   for (int n = 0; n < N; ++n) S::store(kept + n * S::kSize, S::subtract(next[n], smallest));
 }
 
+// The costs of the candidates of pixel x.
+template <class S, int kCandidates>
+[[gnu::always_inline]] inline void compare(const PixelRow& left, const PixelRow& right, int x,
+                                           std::uint8_t* cost) {
+  typename S::V words[kPlanes];
+  for (int p = 0; p < kPlanes; ++p) words[p] = S::spread(left.planes[p][x]);
+  for (int i = 0; i < kCandidates; i += S::kSize)
+    S::store(cost + i, matching_cost<S>(words, right, x + i));
+}
+
+template <class S, int kCandidates>
+void cost_row(const CostRow& row) {
+  const PixelRow left = row.left, right = row.right;
+  std::uint8_t* const cost = row.cost;
+  for (int x = 0, width = row.width_px; x < width; ++x)
+    compare<S, kCandidates>(left, right, x, cost + x * kCandidates);
+}
+
+// Where one of the paths from above keeps its pixels, one after the other, starting anywhere.
+template <int kCandidates>
+class KeptPath {
+ public:
+  KeptPath(std::uint8_t* first, int width_px, int slot)
+      : first_(first), end_(first + width_px * kCandidates), at_(first + slot * kCandidates) {}
+
+  [[gnu::always_inline]] std::uint8_t* next() {
+    std::uint8_t* const here = at_;
+    at_ = here + kCandidates == end_ ? first_ : here + kCandidates;
+    return here;
+  }
+
+ private:
+  std::uint8_t* const first_;
+  std::uint8_t* const end_;
+  std::uint8_t* at_;
+};
+
+// After the costs themselves, since each waits for other things: side by side they would fill the
+// window in which a machine looks for work.
 template <class S, int kCandidates>
 void sweep_down(const SweepRow& row) {
   constexpr int N = kCandidates / S::kSize;
   using V = typename S::V;
+  cost_row<S, kCandidates>({row.width_px, row.left, row.right, row.cost});
   const V small = S::spread(row.small_penalty), nearer = S::spread(row.nearer_penalty);
-  std::array<int, 3> slot = row.first_slot;
-  for (int x = 0; x < row.width_px; ++x) {
-    V words[kPlanes], cost[N], sum[N];
-    for (int p = 0; p < kPlanes; ++p) words[p] = S::spread(row.left.planes[p][x]);
+  const auto kept = [&](int k) {
+    return KeptPath<kCandidates>(row.paths_above[k], row.width_px, row.first_slot[k]);
+  };
+  KeptPath<kCandidates> paths[] = {kept(0), kept(1), kept(2)};
+  const std::array<std::uint8_t*, 3> penalty = row.penalty.above;
+  const std::uint8_t* costs = row.cost;
+  std::uint8_t* sums = row.sum;
+  for (int x = 0, width = row.width_px; x < width; ++x) {
+    V cost[N], sum[N];
     for (int n = 0; n < N; ++n) {
-      cost[n] = matching_cost<S>(words, row.right, x + n * S::kSize);
-      S::store(row.cost + x * kCandidates + n * S::kSize, cost[n]);
+      cost[n] = S::load(costs + n * S::kSize);
       sum[n] = S::spread(0);
     }
-    for (int k = 0; k < 3; ++k) {
-      std::uint8_t* const kept = row.paths_above[k] + slot[k] * kCandidates;
-      const V large = S::spread(row.penalty.above[k][x]);
-      step_from_above<S, N>(cost, small, nearer, large, kept, sum);
-      slot[k] = slot[k] + 1 == row.width_px ? 0 : slot[k] + 1;
-    }
-    std::uint8_t* const sums = row.sum + x * kCandidates;
+    for (int k = 0; k < 3; ++k)
+      step_from_above<S, N>(cost, small, nearer, S::spread(penalty[k][x]), paths[k].next(), sum);
     for (int n = 0; n < N; ++n) S::store(sums + n * S::kSize, sum[n]);
+    costs += kCandidates;
+    sums += kCandidates;
   }
 }
 
@@ -223,65 +264,6 @@ template <class S, int N>
   }
   return found;
 }
-
-// Memory for the local costs of a pixel's candidates, between walls.
-template <int kCandidates>
-class WalledCosts {
- public:
-  WalledCosts() {
-    for (std::uint8_t* const wall : {bytes_, bytes_ + kWall + kCandidates})
-      for (int i = 0; i < kWall; ++i) wall[i] = kNoLocalCost;
-  }
-  std::uint8_t* first() { return bytes_ + kWall; }
-
- private:
-  static constexpr int kWall = 64;  // keeps the first one aligned
-  alignas(kWall) std::uint8_t bytes_[kWall + kCandidates + kWall];
-};
-
-// Local costs of all candidates about pixel x, summed over kLocalWidth_px pixels of the row.
-template <class S, int kCandidates>
-class LocalSums {
- public:
-  LocalSums(const SweepRow& row, int x) : row_(row) {
-    for (int n = 0; n < N; ++n) {
-      sum_[n] = S::spread(0);
-      for (int dx = -kHalf; dx <= kHalf; ++dx) sum_[n] = S::add(sum_[n], cost(x + dx, n));
-    }
-  }
-
-  // From the pixel before (direction 1) or after it (-1) to pixel x.
-  [[gnu::always_inline]] void move_to(int x, int direction) {
-    const int out = x - direction * (kHalf + 1), in = x + direction * kHalf;
-    for (int n = 0; n < N; ++n) sum_[n] = S::add(S::subtract(sum_[n], cost(out, n)), cost(in, n));
-  }
-
-  // Moves the winner at x to the best of it and its two neighbours; of equals to itself, then to
-  // the one before. Without branches, which nobody could predict.
-  [[gnu::always_inline]] void choose(int x, WalledCosts<kCandidates>& walled,
-                                     const WinnerPointers& out) const {
-    for (int n = 0; n < N; ++n) S::store(walled.first() + n * S::kSize, sum_[n]);
-    const std::uint8_t* const about = walled.first() + out.candidate[x];
-    const int before = about[-1], here = about[0], after = about[1];
-    const int is_before = before < here, is_after = after < (is_before != 0 ? before : here);
-    const int step = is_after - (is_before & ~is_after);
-    out.candidate[x] = static_cast<std::uint8_t>(out.candidate[x] + step);
-    out.local_before[x] = about[step - 1];
-    out.local[x] = about[step];
-    out.local_after[x] = about[step + 1];
-  }
-
- private:
-  static constexpr int N = kCandidates / S::kSize, kHalf = kLocalWidth_px / 2;
-
-  typename S::V cost(int x, int n) const {
-    const int last = row_.width_px - 1, column = x < 0 ? 0 : (x > last ? last : x);
-    return S::load(row_.cost + column * kCandidates + n * S::kSize);
-  }
-
-  const SweepRow& row_;
-  typename S::V sum_[N];
-};
 
 template <class S, int N>
 [[gnu::always_inline]] inline void find_winner(const typename S::V (&sum)[N], int x,
@@ -305,102 +287,56 @@ template <class S, int kCandidates>
 class PathAlong {
  public:
   PathAlong(const SweepRow& row, int direction)
-      : row_(row),
-        direction_(direction),
+      : cost_(row.cost),
+        sum_(row.sum),
+        penalty_(row.penalty.beside + (direction > 0 ? 0 : 1)),
         small_(S::spread(row.small_penalty)),
-        path_(start_of_path<S, N>()),
-        local_(row, (row.width_px + 1) / 2 - (direction > 0 ? 1 : 0)) {}
+        path_(start_of_path<S, N>()) {}
 
   // Goes on to pixel x and adds to its sums.
   [[gnu::always_inline]] void pass(int x) {
-    std::uint8_t* const sums = step(x);
+    typename S::V cost[N];
+    for (int n = 0; n < N; ++n) cost[n] = S::load(cost_ + x * kCandidates + n * S::kSize);
+    step_along_row<S, N>(cost, small_, S::spread(penalty_[x]), path_);
+    std::uint8_t* const sums = sum_ + x * kCandidates;
     for (int n = 0; n < N; ++n)
       S::store(sums + n * S::kSize, S::add_saturated(S::load(sums + n * S::kSize), path_.cost[n]));
-  }
-
-  // Goes on to pixel x, whose sums want only this path, and finds its winner.
-  [[gnu::always_inline]] void finish(int x, WalledCosts<kCandidates>& walled,
-                                     const WinnerPointers& out) {
-    const std::uint8_t* const sums = step(x);
-    typename S::V sum[N];
-    for (int n = 0; n < N; ++n)
-      sum[n] = S::add_saturated(S::load(sums + n * S::kSize), path_.cost[n]);
-    find_winner<S, N>(sum, x, out);
-    local_.move_to(x, direction_);
-    local_.choose(x, walled, out);
   }
 
  private:
   static constexpr int N = kCandidates / S::kSize;
 
-  [[gnu::always_inline]] std::uint8_t* step(int x) {
-    typename S::V cost[N];
-    for (int n = 0; n < N; ++n) cost[n] = S::load(row_.cost + x * kCandidates + n * S::kSize);
-    const std::uint8_t penalty = row_.penalty.beside[direction_ > 0 ? x : x + 1];
-    step_along_row<S, N>(cost, small_, S::spread(penalty), path_);
-    return row_.sum + x * kCandidates;
-  }
-
-  const SweepRow& row_;
-  const int direction_;
+  const std::uint8_t* const cost_;
+  std::uint8_t* const sum_;
+  const std::uint8_t* const penalty_;
   const typename S::V small_;
   PathState<S, N> path_;
-  LocalSums<S, kCandidates> local_;  // of the pixel before the first one to finish
 };
 
-// The two paths along a row. They meet in the middle; from there on each one comes to pixels that
-// the other has passed.
 template <class S, int kCandidates>
-class PathsAlong {
- public:
-  PathsAlong(const SweepRow& row, WalledCosts<kCandidates>& walled, const WinnerPointers& out)
-      : last_(row.width_px - 1),
-        walled_(walled),
-        out_(out),
-        rightwards_(row, 1),
-        leftwards_(row, -1) {}
-
-  // Goes on to the pixels that lie `step` from the ends of the row.
-  [[gnu::always_inline]] void pass(int step) {
-    rightwards_.pass(step);
-    leftwards_.pass(last_ - step);
+void find_winners(const SweepRow& row, const WinnerPointers& winners) {
+  constexpr int N = kCandidates / S::kSize;
+  const WinnerPointers out = winners;
+  const std::uint8_t* const sums = row.sum;
+  for (int x = 0, width = row.width_px; x < width; ++x) {
+    typename S::V sum[N];
+    for (int n = 0; n < N; ++n) sum[n] = S::load(sums + x * kCandidates + n * S::kSize);
+    find_winner<S, N>(sum, x, out);
   }
-  [[gnu::always_inline]] void finish(int step) {
-    rightwards_.finish(step, walled_, out_);
-    leftwards_.finish(last_ - step, walled_, out_);
-  }
-  // Where both come to the same pixel.
-  [[gnu::always_inline]] void meet(int step) {
-    rightwards_.pass(step);
-    leftwards_.finish(step, walled_, out_);
-  }
-
- private:
-  const int last_;
-  WalledCosts<kCandidates>& walled_;
-  const WinnerPointers& out_;
-  PathAlong<S, kCandidates> rightwards_, leftwards_;
-};
+}
 
 // Four paths go at once, because each of them alone waits for its last minimum most of the time.
 template <class S, int kCandidates>
 void sweep_along(const RowPair& rows, const WinnerPair& out) {
-  WalledCosts<kCandidates> walled;
-  PathsAlong<S, kCandidates> first(rows[0], walled, out[0]), second(rows[1], walled, out[1]);
-  const int width = rows[0].width_px, middle = width / 2;
-  int step = 0;
-  for (; step < middle; ++step) {
-    first.pass(step);
-    second.pass(step);
+  PathAlong<S, kCandidates> a(rows[0], 1), b(rows[0], -1), c(rows[1], 1), d(rows[1], -1);
+  const int width = rows[0].width_px;
+  for (int x = 0; x < width; ++x) {
+    a.pass(x);
+    b.pass(width - 1 - x);
+    c.pass(x);
+    d.pass(width - 1 - x);
   }
-  if (width % 2 != 0) {
-    first.meet(step);
-    second.meet(step++);
-  }
-  for (; step < width; ++step) {
-    first.finish(step);
-    second.finish(step);
-  }
+  for (int i = 0; i < 2; ++i) find_winners<S, kCandidates>(rows[i], out[i]);
 }
 
 // Even is for numbers of candidates that are even multiples of kCandidateStep, Odd for the others.

@@ -57,7 +57,11 @@ const std::uint8_t* image_row(const cv::Mat1b& padded, int y) {
   return padded.ptr<std::uint8_t>(y + kCensusHalfHeight_px) + kCensusHalfWidth_px;
 }
 
-cv::Mat1b row_of_bytes(int count) { return cv::Mat1b(1, count + kRowSlack, std::uint8_t{0}); }
+cv::Mat1b row_of_bytes(int count) {
+  cv::Mat1b row(1, count + kRowSlack);
+  std::fill_n(row.data, row.cols, std::uint8_t{0});
+  return row;
+}
 
 CensusRows::CensusRows(const CensusPair& pair, int min_disparity_px, int max_disparity_px,
                        CensusKernels::Census census)

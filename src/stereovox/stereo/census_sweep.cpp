@@ -9,22 +9,7 @@ namespace {
 
 constexpr int kPenaltyRows = 4;
 
-static_assert(kLocalWidth_px * kMaxMatchingCost < kNoLocalCost, "local sums must fit a byte");
-
 }  // namespace
-
-WinnerRow::WinnerRow(int width_px)
-    : candidate(width_px),
-      cost(width_px),
-      second(width_px),
-      local_before(width_px),
-      local(width_px),
-      local_after(width_px) {}
-
-WinnerPointers WinnerRow::pointers() {
-  return {candidate.data(),    cost.data(),  second.data(),
-          local_before.data(), local.data(), local_after.data()};
-}
 
 CensusSweep::CensusSweep(const CensusPair& pair, const SweepParams& params, int first_row,
                          const CensusKernels& kernels)
@@ -62,6 +47,8 @@ void CensusSweep::next_rows(std::array<WinnerRow, 2>& found) {
   for (SweepRow& row : rows_)
     if (y_ < pair_.height_px) pass_down(row);
   kernels_.along[size_index_](rows_, {found[0].pointers(), found[1].pointers()});
+  for (std::size_t i = 0; i < found.size(); ++i)
+    choose_locally(rows_[i].cost, params_.candidates, found[i]);
 }
 
 void CensusSweep::pass_down(SweepRow& row) {

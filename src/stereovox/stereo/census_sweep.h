@@ -13,6 +13,7 @@
 #include "stereovox/core/frame.h"
 #include "stereovox/stereo/census_kernels.h"
 #include "stereovox/stereo/census_rows.h"
+#include "stereovox/stereo/winner_row.h"
 
 namespace stereovox {
 
@@ -24,15 +25,6 @@ struct SweepParams {
   PenaltyTable large_penalty = {};
 
   int max_disparity_px() const { return min_disparity_px + candidates - 1; }
-};
-
-// What a matcher knows of a row's pixels: see WinnerPointers.
-struct WinnerRow {
-  std::vector<std::uint8_t> candidate, cost, second, local_before, local, local_after;
-
-  explicit WinnerRow(int width_px);
-  WinnerPointers pointers();
-  bool operator==(const WinnerRow&) const = default;
 };
 
 class CensusSweep {
@@ -68,8 +60,7 @@ class CensusSweep {
 std::vector<WinnerRow> sweep_reference(const RectifiedPair& pair, const SweepParams& params,
                                        int first_row, int end_row);
 
-// Moves the winners of a row to the best of them and their two neighbours by the local cost, as
-// WinnerPointers says, plainly. CostAt(x, candidate) is a cost of that row.
+// choose_locally, plainly. CostAt(x, candidate) is a cost of that row.
 using CostAt = std::function<int(int, int)>;
 void choose_locally_reference(const CostAt& cost, int candidates, WinnerRow& row);
 

@@ -60,26 +60,21 @@ class Judge {
   // Writes the levels of confidence, the disparities that pass or 0, and 1 where islands may stay.
   void judge_row(int v, std::uint8_t* level, std::int16_t* passed, std::uint8_t* is_sure) const {
     table_.fill_level_row(features_, v, level);
-    const std::int16_t* const disparity = features_.disparity[v];
-    const std::uint8_t* const log_ratio = features_.log_ratio[v];
-    const std::uint8_t* const left_right = features_.left_right[v];
-    const int width = features_.disparity.cols;
-    for (int u = 0; u < width; ++u) {
-      const bool passes = (disparity[u] > 0) & (log_ratio[u] >= min_log_ratio_) &
-                          (left_right[u] <= max_left_right_) & (level[u] >= min_level_);
-      passed[u] = passes ? disparity[u] : std::int16_t{0};
-      is_sure[u] = level[u] >= sure_level_ ? 1 : 0;
-    }
+    const JudgedRow row = {.disparity = features_.disparity[v],
+                           .log_ratio = features_.log_ratio[v],
+                           .left_right = features_.left_right[v],
+                           .level = level,
+                           .min_log_ratio = min_log_ratio_,
+                           .max_left_right = max_left_right_,
+                           .min_level = min_level_,
+                           .sure_level = sure_level_};
+    fastest_row_kernels().judge(row, features_.disparity.cols, passed, is_sure);
     keep_seen(v, passed);
   }
 
   // Rejects what does not join two recorded pixels.
   void keep_seen(int v, std::int16_t* passed) const {
-    constexpr int kHalf = kStepsPerPixel / 2;
-    for (int u = 0; u < features_.disparity.cols; ++u) {
-      const bool reaches_in = u * kStepsPerPixel + kHalf > passed[u];
-      passed[u] = reaches_in ? passed[u] : std::int16_t{0};
-    }
+    fastest_row_kernels().keep_seen(features_.disparity.cols, passed);
     if (!pair_.valid_left.empty() || !pair_.valid_right.empty()) keep_recorded(v, passed);
   }
 

@@ -1,9 +1,10 @@
 #include "stereovox/stereo/match_confidence.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
-#include <vector>
+#include <memory>
 
 namespace stereovox {
 namespace {
@@ -13,26 +14,17 @@ constexpr int kHalfWindow_px = kVarianceSide_px / 2;
 constexpr double kSpan = ConfidenceModel::kMaxLogit - ConfidenceModel::kMinLogit;
 constexpr double kLevelsPerLogit = (CredenceTable::kLevels - 1) / kSpan;
 
-// Of the rows about v; sums of squares wrap around, their variance does not. Two more on either
-// side repeat the ends.
-struct Moments {
-  std::vector<std::uint32_t> sum, square_sum;
+// Memory for one number of each pixel of a row, which holds none yet.
+template <class T>
+std::unique_ptr<T[]> memory_for_row(int width) {      // NOLINT: a plain array for the kernels
+  return std::make_unique_for_overwrite<T[]>(width);  // NOLINT
+}
 
-  explicit Moments(int width)
-      : sum(width + 2 * kHalfWindow_px), square_sum(width + 2 * kHalfWindow_px) {}
-
-  void add_row(const std::int16_t* disparity, int width) {
-    fastest_row_kernels().add_moments(disparity, width, sum.data() + kHalfWindow_px,
-                                      square_sum.data() + kHalfWindow_px);
-  }
-
-  void repeat_ends() {
-    for (std::vector<std::uint32_t>* const row : {&sum, &square_sum}) {
-      std::fill_n(row->begin(), kHalfWindow_px, (*row)[kHalfWindow_px]);
-      std::fill_n(row->rbegin(), kHalfWindow_px, row->rbegin()[kHalfWindow_px]);
-    }
-  }
-};
+// Two more on either side repeat the ends.
+void repeat_ends(std::uint32_t* row, int width) {
+  std::fill_n(row - kHalfWindow_px, kHalfWindow_px, row[0]);
+  std::fill_n(row + width, kHalfWindow_px, row[width - 1]);
+}
 
 // At `place`, counted in bins from the start of the first.
 float between(const std::array<double, ConfidenceModel::kBins>& bins, double place) {
@@ -56,12 +48,17 @@ float log_of_raised_variance(float variance_px2) {
 }
 
 void fill_variance_row(const cv::Mat1s& disparity, int v, float* variance_px2) {
-  const int width = disparity.cols;
-  Moments column(width);
-  for (int dv = -kHalfWindow_px; dv <= kHalfWindow_px; ++dv)
-    column.add_row(disparity[std::clamp(v + dv, 0, disparity.rows - 1)], width);
-  column.repeat_ends();
-  fastest_row_kernels().variances(column.sum.data(), column.square_sum.data(), width, variance_px2);
+  const int width = disparity.cols, padded_width = width + 2 * kHalfWindow_px;
+  std::array<const std::int16_t*, kVarianceSide_px> rows = {};
+  for (int k = 0; k < kVarianceSide_px; ++k)
+    rows[k] = disparity[std::clamp(v + k - kHalfWindow_px, 0, disparity.rows - 1)];
+  const auto memory = memory_for_row<std::uint32_t>(2 * padded_width);
+  std::uint32_t* const sum = memory.get() + kHalfWindow_px;
+  std::uint32_t* const square_sum = sum + padded_width;
+  fastest_row_kernels().moments(rows.data(), width, sum, square_sum);
+  repeat_ends(sum, width);
+  repeat_ends(square_sum, width);
+  fastest_row_kernels().variances(memory.get(), memory.get() + padded_width, width, variance_px2);
 }
 
 PixelFeatures features_at(const MatchFeatures& features, int v, int u, float variance_px2) {
@@ -95,12 +92,12 @@ int CredenceTable::first_level_of(double confidence) const {
 void CredenceTable::fill_level_row(const MatchFeatures& features, int v,
                                    std::uint8_t* level) const {
   const int width = features.disparity.cols;
-  std::vector<float> variance_px2(width);
-  fill_variance_row(features.disparity, v, variance_px2.data());
+  const auto variance_px2 = memory_for_row<float>(width);
+  fill_variance_row(features.disparity, v, variance_px2.get());
   const LevelRow row = {.log_ratio = features.log_ratio[v],
                         .left_right = features.left_right[v],
                         .local_cost = features.local_cost[v],
-                        .variance_px2 = variance_px2.data(),
+                        .variance_px2 = variance_px2.get(),
                         .bias = bias_,
                         .of_log_ratio = log_ratio_,
                         .of_left_right = left_right_,

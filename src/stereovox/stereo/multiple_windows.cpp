@@ -17,6 +17,7 @@ MultipleWindowSweep::MultipleWindowSweep(const CensusPair& pair, const MultipleW
       size_index_(candidates / kCandidateStep - 1),
       width_px_(pair.width_px),
       height_px_(pair.height_px),
+      candidates_(candidates),
       pixels_(pair, min_disparity_px, min_disparity_px + candidates - 1, kernels.census),
       y_(first_row),
       summed_(std::max(0, first_row - windows.half_px)),
@@ -34,10 +35,10 @@ void MultipleWindowSweep::next_row(WinnerRow& found) {
   const SupportedRow row{.width_px = width_px_,
                          .half_px = windows_.half_px,
                          .boxes = {boxes_at(above), boxes_at(y_), boxes_at(below)},
-                         .cost = costs_at(y_),
                          .area = windows_.area()};
   const auto neighbours = static_cast<std::size_t>(windows_.neighbours);
   kernels_.choose_supported[neighbours][size_index_](row, found.pointers());
+  choose_locally(costs_at(y_), candidates_, found);
   ++y_;
 }
 

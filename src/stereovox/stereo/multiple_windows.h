@@ -37,7 +37,7 @@ class MultipleWindowSweep {
   const MultipleWindows windows_;
   const WindowKernels& kernels_;
   const std::size_t size_index_;  // of the kernels for this number of candidates
-  const int width_px_, height_px_;
+  const int width_px_, height_px_, candidates_;
   CensusRows pixels_;
   int y_, summed_, compared_;           // the next row; the first ones without sums, without costs
   std::vector<std::uint16_t> columns_;  // sums over the rows of a window

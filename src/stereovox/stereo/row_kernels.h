@@ -56,6 +56,13 @@ struct OwnedRow {
   int max_disparity_px = 0, max_difference = 0;  // the difference in steps
 };
 
+// What is known of a row's matches, and what of it is enough: see judge_matches.h.
+struct JudgedRow {
+  const std::int16_t* disparity = nullptr;
+  const std::uint8_t *log_ratio = nullptr, *left_right = nullptr, *level = nullptr;
+  int min_log_ratio = 0, max_left_right = 0, min_level = 0, sure_level = 0;
+};
+
 struct RowKernels {
   // Vertices of the parabolas through the local costs, in steps.
   using Disparities = void (*)(const LocalRow& row, int width_px, int max_disparity_px,
@@ -69,13 +76,18 @@ struct RowKernels {
   using Means = void (*)(const std::int16_t* const* members, int width_px, std::int16_t* out);
   // Writes what becomes of pixels at edges; others that it writes stay as they are.
   using EdgeMedians = void (*)(const MedianRows& rows, int width_px, std::int16_t* out);
-  // Adds the disparities and their squares; the squares may wrap around.
-  using AddMoments = void (*)(const std::int16_t* disparity, int width_px, std::uint32_t* sum,
-                              std::uint32_t* square_sum);
+  // Sums of the disparities of kVarianceSide_px rows and of their squares, which may wrap around.
+  using Moments = void (*)(const std::int16_t* const* rows, int width_px, std::uint32_t* sum,
+                           std::uint32_t* square_sum);
   // From the moments of columns, two more at either end.
   using Variances = void (*)(const std::uint32_t* sum, const std::uint32_t* square_sum,
                              int width_px, float* variance_px2);
   using Levels = void (*)(const LevelRow& row, int width_px, std::uint8_t* out);
+  // Disparities > 0 that pass, or 0; and 1 where a level reaches sure_level, else 0.
+  using Judge = void (*)(const JudgedRow& row, int width_px, std::int16_t* passed,
+                         std::uint8_t* is_sure);
+  // Sets disparities to 0 that lead beyond the left end of the right row.
+  using KeepSeen = void (*)(int width_px, std::int16_t* passed);
 
   Disparities disparities = nullptr;
   LeftRight left_right = nullptr;
@@ -83,9 +95,11 @@ struct RowKernels {
   Medians medians = nullptr;
   Means means = nullptr;
   EdgeMedians edge_medians = nullptr;
-  AddMoments add_moments = nullptr;
+  Moments moments = nullptr;
   Variances variances = nullptr;
   Levels levels = nullptr;
+  Judge judge = nullptr;
+  KeepSeen keep_seen = nullptr;
 };
 
 const RowKernels& portable_row_kernels();

@@ -212,12 +212,20 @@ void settle_edges(const MedianRows& rows, int width_px, Step* __restrict out) {
 // Variances are summed over steps of this many smaller ones: their squares then fit 32 bits.
 constexpr int kCoarse = 8;
 
-void add_moments(const Step* disparity, int width_px, std::uint32_t* __restrict sum,
-                 std::uint32_t* __restrict square_sum) {
+void fill_moments(const Step* const* disparity, int width_px, std::uint32_t* __restrict sum,
+                  std::uint32_t* __restrict square_sum) {
+  const Step* rows[kVarianceSide_px];
+  for (int k = 0; k < kVarianceSide_px; ++k) rows[k] = disparity[k];
   for (int u = 0; u < width_px; ++u) {
-    const std::int32_t coarse = disparity[u] / kCoarse;
-    sum[u] += static_cast<std::uint32_t>(coarse);
-    square_sum[u] += static_cast<std::uint32_t>(coarse * coarse);
+    std::int32_t coarse_sum = 0;
+    std::uint32_t squares = 0;
+    for (int k = 0; k < kVarianceSide_px; ++k) {
+      const Step coarse = static_cast<Step>(rows[k][u] / kCoarse);
+      coarse_sum += coarse;
+      squares += static_cast<std::uint32_t>(coarse * coarse);
+    }
+    sum[u] = static_cast<std::uint32_t>(coarse_sum);
+    square_sum[u] = squares;
   }
 }
 
@@ -257,15 +265,34 @@ void fill_levels(const LevelRow& row, int width_px, std::uint8_t* __restrict out
   }
 }
 
+void judge_row(const JudgedRow& row, int width_px, Step* __restrict passed,
+               std::uint8_t* __restrict is_sure) {
+  const JudgedRow r = row;
+  for (int u = 0; u < width_px; ++u) {
+    const bool passes = (r.disparity[u] > 0) & (r.log_ratio[u] >= r.min_log_ratio) &
+                        (r.left_right[u] <= r.max_left_right) & (r.level[u] >= r.min_level);
+    passed[u] = passes ? r.disparity[u] : Step{0};
+    is_sure[u] = static_cast<std::uint8_t>(r.level[u] >= r.sure_level);
+  }
+}
+
+void keep_seen(int width_px, Step* __restrict passed) {
+  constexpr int kHalf = kStepsPerPixel / 2;
+  for (int u = 0; u < width_px; ++u)
+    passed[u] = u * kStepsPerPixel + kHalf > passed[u] ? passed[u] : Step{0};
+}
+
 constexpr RowKernels kRowKernels = {.disparities = fill_disparities,
                                     .left_right = fill_left_right,
                                     .sort_columns = sort_columns,
                                     .medians = fill_medians,
                                     .means = fill_means,
                                     .edge_medians = settle_edges,
-                                    .add_moments = add_moments,
+                                    .moments = fill_moments,
                                     .variances = fill_variances,
-                                    .levels = fill_levels};
+                                    .levels = fill_levels,
+                                    .judge = judge_row,
+                                    .keep_seen = keep_seen};
 
 }  // namespace
 }  // namespace stereovox

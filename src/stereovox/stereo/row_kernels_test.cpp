@@ -56,8 +56,7 @@ std::vector<double> results(const RowKernels& kernels, int width) {
   kernels.medians(sorted, width, median.data());
   kernels.means(members.data(), width, mean.data());
   std::vector<std::uint32_t> sum(width + kPadding, 3), square_sum(width + kPadding, 1000);
-  for (const std::int16_t* const row : members)
-    kernels.add_moments(row, width, sum.data(), square_sum.data());
+  kernels.moments(members.data(), width, sum.data(), square_sum.data());
   std::vector<float> variance_px2(width);
   kernels.variances(sum.data(), square_sum.data(), width, variance_px2.data());
   std::vector<std::uint8_t> level(width);
@@ -72,6 +71,18 @@ std::vector<double> results(const RowKernels& kernels, int width) {
                   .of_variance = -7.7F,
                   .max_level = 254},
                  width, level.data());
+  std::vector<std::int16_t> passed(width);
+  std::vector<std::uint8_t> is_sure(width);
+  kernels.judge({.disparity = members[0],
+                 .log_ratio = bytes[0].data(),
+                 .left_right = bytes[1].data(),
+                 .level = bytes[2].data(),
+                 .min_log_ratio = 20,
+                 .max_left_right = 200,
+                 .min_level = 10,
+                 .sure_level = 128},
+                width, passed.data(), is_sure.data());
+  kernels.keep_seen(width, passed.data());
   std::array<std::vector<std::int16_t>, kMedianSide_px> disparities;
   std::array<std::vector<std::uint8_t>, kMedianSide_px> grays;
   MedianRows square = {.contrast_gray = 200};
@@ -93,6 +104,8 @@ std::vector<double> results(const RowKernels& kernels, int width) {
   append(settled);
   append(variance_px2);
   append(level);
+  append(passed);
+  append(is_sure);
   return all;
 }
 

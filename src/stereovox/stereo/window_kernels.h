@@ -43,14 +43,7 @@ struct ChoiceRow {
   int width_px = 0;
   const std::uint8_t *arm_up = nullptr, *arm_down = nullptr;
   std::array<const std::uint16_t*, kMaxArm_px + 1> before = {}, after = {};  // width x candidates
-  std::uint8_t* cost = nullptr;         // what was gathered of the row
   const std::uint16_t* area = nullptr;  // pixels of each window
-};
-
-struct CostRow {
-  int width_px = 0;
-  PixelRow left, right;          // candidate i of left pixel x is right pixel x + i
-  std::uint8_t* cost = nullptr;  // memory for width x candidates costs
 };
 
 // Costs summed over squares of 2 half_px + 1 rows and columns, from those of the row above: one row
@@ -78,8 +71,7 @@ struct SupportedRow {
   int width_px = 0, half_px = 0;
   // Sums about the pixels half_px above, in, and half_px below this row: width x candidates.
   std::array<const std::uint16_t*, 3> boxes = {};
-  std::uint8_t* cost = nullptr;  // of this row
-  int area = 0;                  // pixels of all squares that count
+  int area = 0;  // pixels of all squares that count
 };
 
 // Functions that depend on the number of candidates are listed by candidates / kCandidateStep - 1.
@@ -95,8 +87,7 @@ struct WindowKernels {
   CensusKernels::Census census = nullptr;
   Arms arms = nullptr;
   std::array<Gather, kSizes> gather = {};
-  // The costs of a winner are means over its window in parts of a bit, kMeanCostSteps. Where a
-  // surface leans, its window is right for its middle only: so local costs choose among neighbours.
+  // The costs of a winner are means over its window in parts of a bit, kMeanCostSteps.
   std::array<Choose, kSizes> choose = {};
   std::array<Costs, kSizes> costs = {};
   std::array<SumBoxes, kSizes> sum_boxes = {};

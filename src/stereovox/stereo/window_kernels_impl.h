@@ -30,22 +30,6 @@ void grow_arms(const ArmRow& row, std::uint8_t* out) {
   }
 }
 
-// The costs of the candidates of pixel x.
-template <class S, int kCandidates>
-[[gnu::always_inline]] inline void compare(const PixelRow& left, const PixelRow& right, int x,
-                                           std::uint8_t* cost) {
-  typename S::V words[kPlanes];
-  for (int p = 0; p < kPlanes; ++p) words[p] = S::spread(left.planes[p][x]);
-  for (int i = 0; i < kCandidates; i += S::kSize)
-    S::store(cost + i, matching_cost<S>(words, right, x + i));
-}
-
-template <class S, int kCandidates>
-void cost_row(const CostRow& row) {
-  for (int x = 0; x < row.width_px; ++x)
-    compare<S, kCandidates>(row.left, row.right, x, row.cost + x * kCandidates);
-}
-
 // The costs of the candidates of pixel x, added to the sums of the pixels before it in the row.
 template <class S, int kCandidates>
 [[gnu::always_inline]] inline void add_costs(const GatherRow& row, int x) {
@@ -115,49 +99,24 @@ constexpr std::uint8_t mean_cost(Sum sum, int area) {
   return static_cast<std::uint8_t>((sum * kMeanCostSteps + area / 2) / area);
 }
 
-// Finds the winners of a row from left to right.
-template <class S, int kCandidates>
-class WinnersAlong {
- public:
-  // `cost` of the row: width x candidates.
-  WinnersAlong(int width_px, std::uint8_t* cost, const WinnerPointers& out)
-      : costs_(row_of(width_px, cost)), out_(out), local_(costs_, 0) {}
+// The winner of pixel x from the sums of its windows, which have `area` pixels.
+template <int kCandidates>
+[[gnu::always_inline]] inline void find_winner(const Sum* sums, int area, int x,
+                                               const WinnerPointers& out) {
+  const BestSum best = best_of<kCandidates>(sums);
+  out.candidate[x] = static_cast<std::uint8_t>(best.candidate);
+  out.cost[x] = mean_cost(best.sum, area);
+  out.second[x] = mean_cost(best.second, area);
+}
 
-  // The sums of the windows of pixel x, which have `area` pixels. `walled` is no member, so that
-  // the compiler may keep the members in registers.
-  [[gnu::always_inline]] void choose(int x, const Sum* sums, int area,
-                                     WalledCosts<kCandidates>& walled) {
-    const BestSum best = best_of<kCandidates>(sums);
-    out_.candidate[x] = static_cast<std::uint8_t>(best.candidate);
-    out_.cost[x] = mean_cost(best.sum, area);
-    out_.second[x] = mean_cost(best.second, area);
-    if (x > 0) local_.move_to(x, 1);
-    local_.choose(x, walled, out_);
-  }
-
- private:
-  static SweepRow row_of(int width_px, std::uint8_t* cost) {
-    SweepRow row;
-    row.width_px = width_px;
-    row.cost = cost;
-    return row;
-  }
-
-  const SweepRow costs_;
-  const WinnerPointers out_;
-  LocalSums<S, kCandidates> local_;
-};
-
-template <class S, int kCandidates>
+template <int kCandidates>
 void choose_row(const ChoiceRow& row, const WinnerPointers& out) {
-  WalledCosts<kCandidates> walled;
-  WinnersAlong<S, kCandidates> winners(row.width_px, row.cost, out);
   for (int x = 0; x < row.width_px; ++x) {
     const Sum* const before = row.before[row.arm_up[x]] + x * kCandidates;
     const Sum* const after = row.after[row.arm_down[x]] + x * kCandidates;
     Sum sums[kCandidates];
     for (int i = 0; i < kCandidates; ++i) sums[i] = static_cast<Sum>(after[i] - before[i]);
-    winners.choose(x, sums, row.area[x], walled);
+    find_winner<kCandidates>(sums, row.area[x], x, out);
   }
 }
 
@@ -218,10 +177,8 @@ template <NeighbourWindows kNeighbours>
                    sorted(at[4][i], at[5][i], at[6][i], at[7][i]));
 }
 
-template <class S, int kCandidates, NeighbourWindows kNeighbours>
+template <int kCandidates, NeighbourWindows kNeighbours>
 void choose_supported(const SupportedRow& row, const WinnerPointers& out) {
-  WalledCosts<kCandidates> walled;
-  WinnersAlong<S, kCandidates> winners(row.width_px, row.cost, out);
   const Sum *const above = row.boxes[0], *const here = row.boxes[1], *const below = row.boxes[2];
   for (int x = 0; x < row.width_px; ++x) {
     const int last = row.width_px - 1, middle = x * kCandidates;
@@ -232,16 +189,16 @@ void choose_supported(const SupportedRow& row, const WinnerPointers& out) {
     Sum sums[kCandidates];
     for (int i = 0; i < kCandidates; ++i)
       sums[i] = sum_of(here[middle + i], support<kNeighbours>(at, i));
-    winners.choose(x, sums, row.area, walled);
+    find_winner<kCandidates>(sums, row.area, x, out);
   }
 }
 
-template <class Odd, class Even, NeighbourWindows kNeighbours>
+template <NeighbourWindows kNeighbours>
 constexpr std::array<WindowKernels::ChooseSupported, WindowKernels::kSizes> supported_choices() {
-  return {choose_supported<Odd, 32, kNeighbours>,  choose_supported<Even, 64, kNeighbours>,
-          choose_supported<Odd, 96, kNeighbours>,  choose_supported<Even, 128, kNeighbours>,
-          choose_supported<Odd, 160, kNeighbours>, choose_supported<Even, 192, kNeighbours>,
-          choose_supported<Odd, 224, kNeighbours>, choose_supported<Even, 256, kNeighbours>};
+  return {choose_supported<32, kNeighbours>,  choose_supported<64, kNeighbours>,
+          choose_supported<96, kNeighbours>,  choose_supported<128, kNeighbours>,
+          choose_supported<160, kNeighbours>, choose_supported<192, kNeighbours>,
+          choose_supported<224, kNeighbours>, choose_supported<256, kNeighbours>};
 }
 
 // Even is for numbers of candidates that are even multiples of kCandidateStep, Odd for the others.
@@ -253,16 +210,15 @@ constexpr WindowKernels make_window_kernels() {
       .gather = {gather_row<Odd, 32>, gather_row<Even, 64>, gather_row<Odd, 96>,
                  gather_row<Even, 128>, gather_row<Odd, 160>, gather_row<Even, 192>,
                  gather_row<Odd, 224>, gather_row<Even, 256>},
-      .choose = {choose_row<Odd, 32>, choose_row<Even, 64>, choose_row<Odd, 96>,
-                 choose_row<Even, 128>, choose_row<Odd, 160>, choose_row<Even, 192>,
-                 choose_row<Odd, 224>, choose_row<Even, 256>},
+      .choose = {choose_row<32>, choose_row<64>, choose_row<96>, choose_row<128>, choose_row<160>,
+                 choose_row<192>, choose_row<224>, choose_row<256>},
       .costs = {cost_row<Odd, 32>, cost_row<Even, 64>, cost_row<Odd, 96>, cost_row<Even, 128>,
                 cost_row<Odd, 160>, cost_row<Even, 192>, cost_row<Odd, 224>, cost_row<Even, 256>},
       .sum_boxes = {sum_boxes<32>, sum_boxes<64>, sum_boxes<96>, sum_boxes<128>, sum_boxes<160>,
                     sum_boxes<192>, sum_boxes<224>, sum_boxes<256>},
-      .choose_supported = {supported_choices<Odd, Even, NeighbourWindows::none>(),
-                           supported_choices<Odd, Even, NeighbourWindows::four>(),
-                           supported_choices<Odd, Even, NeighbourWindows::eight>()}};
+      .choose_supported = {supported_choices<NeighbourWindows::none>(),
+                           supported_choices<NeighbourWindows::four>(),
+                           supported_choices<NeighbourWindows::eight>()}};
 }
 
 }  // namespace

@@ -89,13 +89,13 @@ void WindowSweep::next_row(WinnerRow& found) {
   ChoiceRow row{.width_px = width_px_,
                 .arm_up = arms_.up[y_],
                 .arm_down = arms_.down[y_],
-                .cost = costs_of(y_),
                 .area = area_.data()};
   for (int k = 0; k <= arms_.max_arm_px; ++k) {
     row.before[k] = sums_above(std::max(y_ - k, 0));
     row.after[k] = sums_above(std::min(y_ + k + 1, height_px_));
   }
   kernels_.choose[size_index_](row, found.pointers());
+  choose_locally(costs_of(y_), candidates_, found);
   ++y_;
 }
 
