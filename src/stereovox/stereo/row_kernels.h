@@ -41,9 +41,19 @@ struct MedianRows {
   int contrast_gray = 0;
 };
 
-// The winners of a row and the local costs of them and their neighbours: see WinnerPointers.
+// The winners of a row and the local costs of them and their neighbours: see WinnerRow.
 struct LocalRow {
   const std::uint8_t *candidate = nullptr, *before = nullptr, *here = nullptr, *after = nullptr;
+};
+
+// The local costs of the five candidates about each winner, the first one lowest in `four`.
+inline constexpr int kChoiceReach = 2;
+struct ChoiceCosts {
+  const std::uint32_t* four = nullptr;
+  const std::uint8_t* fifth = nullptr;
+};
+struct ChosenRow {
+  std::uint8_t *candidate = nullptr, *before = nullptr, *here = nullptr, *after = nullptr;
 };
 
 // What a row of matches is compared with: who matches each right pixel best, as its cost, and below
@@ -64,6 +74,8 @@ struct JudgedRow {
 };
 
 struct RowKernels {
+  // Moves winners to the best of them and their two neighbours: see winner_row.h.
+  using Choose = void (*)(const ChoiceCosts& costs, int width_px, const ChosenRow& row);
   // Vertices of the parabolas through the local costs, in steps.
   using Disparities = void (*)(const LocalRow& row, int width_px, int max_disparity_px,
                                std::int16_t* out);
@@ -89,6 +101,7 @@ struct RowKernels {
   // Sets disparities to 0 that lead beyond the left end of the right row.
   using KeepSeen = void (*)(int width_px, std::int16_t* passed);
 
+  Choose choose = nullptr;
   Disparities disparities = nullptr;
   LeftRight left_right = nullptr;
   SortColumns sort_columns = nullptr;

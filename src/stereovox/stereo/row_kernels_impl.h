@@ -19,6 +19,26 @@ template <class T>
   return a < b ? b : a;
 }
 
+// One of two by a mask that has all bits or none.
+[[gnu::always_inline]] constexpr int select(int mask, int yes, int no) {
+  return no ^ ((yes ^ no) & mask);
+}
+
+void choose_winners(const ChoiceCosts& costs, int width_px, const ChosenRow& row) {
+  const ChoiceCosts from = costs;
+  const ChosenRow to = row;
+#pragma GCC ivdep
+  for (int u = 0; u < width_px; ++u) {
+    const auto byte = [&](int i) { return static_cast<int>(from.four[u] >> 8 * i & 255U); };
+    const int a = byte(0), b = byte(1), c = byte(2), d = byte(3), e = from.fifth[u];
+    const int on = -static_cast<int>(d < smaller(b, c)), back = -static_cast<int>(b < c) & ~on;
+    to.candidate[u] = static_cast<std::uint8_t>(to.candidate[u] - on + back);
+    to.before[u] = static_cast<std::uint8_t>(select(on, c, select(back, a, b)));
+    to.here[u] = static_cast<std::uint8_t>(smaller(smaller(b, c), d));
+    to.after[u] = static_cast<std::uint8_t>(select(on, e, select(back, c, d)));
+  }
+}
+
 void fill_disparities(const LocalRow& row, int width_px, int max_disparity_px,
                       Step* __restrict out) {
   constexpr int kHalf = kStepsPerPixel / 2;
@@ -282,7 +302,8 @@ void keep_seen(int width_px, Step* __restrict passed) {
     passed[u] = u * kStepsPerPixel + kHalf > passed[u] ? passed[u] : Step{0};
 }
 
-constexpr RowKernels kRowKernels = {.disparities = fill_disparities,
+constexpr RowKernels kRowKernels = {.choose = choose_winners,
+                                    .disparities = fill_disparities,
                                     .left_right = fill_left_right,
                                     .sort_columns = sort_columns,
                                     .medians = fill_medians,

@@ -6,18 +6,16 @@
 #include <cstddef>
 #include <cstring>
 
+#include "stereovox/stereo/row_kernels.h"
+
 namespace stereovox {
 namespace {
 
-constexpr int kHalf = kLocalWidth_px / 2;
 static_assert(kLocalWidth_px * kMaxMatchingCost < kNoLocalCost, "local sums must fit a byte");
 
-// Where the costs of the pixels about one begin, seen from where its own do.
-using Offsets = std::array<std::ptrdiff_t, kLocalWidth_px>;
-
-// Eight candidates side by side, a byte each, the first one lowest. Five of the sums matter.
+// Eight candidates side by side, a byte each, the first one lowest.
 using Bytes = std::uint64_t;
-constexpr int kByte = 8, kReach = 2;  // candidates on either side of the winner
+constexpr int kByte = 8;
 
 Bytes load(const std::uint8_t* p) {
   Bytes bytes = 0;
@@ -25,49 +23,55 @@ Bytes load(const std::uint8_t* p) {
   return std::endian::native == std::endian::little ? bytes : __builtin_bswap64(bytes);
 }
 
-// The local costs of the candidates from `candidate` - kReach on, all of which exist.
-Bytes inner_costs(const std::uint8_t* cost, const Offsets& offsets, int candidate) {
-  Bytes sums = 0;
-  for (const std::ptrdiff_t offset : offsets) sums += load(cost + offset + candidate - kReach);
-  return sums;
-}
+// Of the candidates of a row's pixels; see choose_locally.
+class LocalCosts {
+ public:
+  LocalCosts(const std::uint8_t* cost, int width_px, int candidates)
+      : cost_(cost), width_px_(width_px), candidates_(candidates) {}
 
-// The same where some lie before the first candidate or behind the last: they get kNoLocalCost.
-Bytes outer_costs(const std::uint8_t* cost, const Offsets& offsets, int candidate, int candidates) {
-  constexpr Bytes kWall = kNoLocalCost;
-  Bytes sums = 0;
-  for (int i = 0; i <= 2 * kReach; ++i) {
-    const int c = candidate + i - kReach;
-    Bytes sum = c < 0 || c >= candidates ? kWall : 0;
-    for (const std::ptrdiff_t offset : offsets) sum += sum != kWall ? cost[offset + c] : 0;
-    sums |= sum << i * kByte;
+  // Of those from candidate - kChoiceReach on. The first 2 kChoiceReach + 1 count.
+  Bytes about(int x, int candidate) const {
+    const bool is_inside =
+        keeps_off(x, kHalf, width_px_) && keeps_off(candidate, kChoiceReach, candidates_);
+    return is_inside ? inside(x, candidate) : anywhere(x, candidate);
   }
-  return sums;
-}
 
-std::uint8_t byte_at(Bytes bytes, int i) { return static_cast<std::uint8_t>(bytes >> i * kByte); }
+ private:
+  static constexpr int kHalf = kLocalWidth_px / 2;
 
-// How far the best of the winner and its neighbours is from it. Without branches, which nobody
-// could predict.
-int step_to_best(Bytes costs) {
-  const int before = byte_at(costs, kReach - 1), here = byte_at(costs, kReach);
-  const int is_before = before < here;
-  const int is_after = byte_at(costs, kReach + 1) < (is_before != 0 ? before : here);
-  return is_after - (is_before & ~is_after);
-}
-
-// The row as plain pointers, so that nothing written can move it.
-struct LocalPointers {
-  std::uint8_t *candidate, *before, *here, *after;
-
-  void choose(int x, Bytes costs) const {
-    const int step = step_to_best(costs);
-    const auto three = static_cast<std::uint32_t>(costs >> (kReach - 1 + step) * kByte);
-    candidate[x] = static_cast<std::uint8_t>(candidate[x] + step);
-    before[x] = byte_at(three, 0);
-    here[x] = byte_at(three, 1);
-    after[x] = byte_at(three, 2);
+  // Whether all places up to `reach` from this one are among the first `count`.
+  static bool keeps_off(int place, int reach, int count) {
+    return place >= reach && place + reach < count;
   }
+
+  const std::uint8_t* cost_of(int x) const {
+    return cost_ + static_cast<std::ptrdiff_t>(x) * candidates_;
+  }
+
+  Bytes inside(int x, int candidate) const {
+    const std::uint8_t* cost = cost_of(x - kHalf) + candidate - kChoiceReach;
+    Bytes sums = 0;
+    for (int k = 0; k < kLocalWidth_px; ++k, cost += candidates_) sums += load(cost);
+    return sums;
+  }
+
+  Bytes anywhere(int x, int candidate) const {
+    Bytes sums = 0;
+    for (int i = 0; i <= 2 * kChoiceReach; ++i)
+      sums |= sum_at(x, candidate + i - kChoiceReach) << i * kByte;
+    return sums;
+  }
+
+  Bytes sum_at(int x, int candidate) const {
+    if (candidate < 0 || candidate >= candidates_) return kNoLocalCost;
+    Bytes sum = 0;
+    for (int column = x - kHalf; column <= x + kHalf; ++column)
+      sum += cost_of(std::clamp(column, 0, width_px_ - 1))[candidate];
+    return sum;
+  }
+
+  const std::uint8_t* const cost_;
+  const int width_px_, candidates_;
 };
 
 }  // namespace
@@ -83,27 +87,24 @@ WinnerRow::WinnerRow(int width_px)
 WinnerPointers WinnerRow::pointers() { return {candidate.data(), cost.data(), second.data()}; }
 
 void choose_locally(const std::uint8_t* cost, int candidates, WinnerRow& row) {
+  constexpr int kChunk = 64;
   const int width = static_cast<int>(row.candidate.size());
-  const LocalPointers out = {row.candidate.data(), row.local_before.data(), row.local.data(),
-                             row.local_after.data()};
-  const auto choose_at = [&, out, cost](int x, const Offsets& offsets) {
-    const std::uint8_t* const own = cost + static_cast<std::ptrdiff_t>(x) * candidates;
-    const int winner = out.candidate[x];
-    const bool is_inner = winner >= kReach && winner + kReach < candidates;
-    out.choose(x, is_inner ? inner_costs(own, offsets, winner)
-                           : outer_costs(own, offsets, winner, candidates));
-  };
-  const auto offsets_at = [&](int x) {
-    Offsets offsets;
-    for (int k = 0; k < kLocalWidth_px; ++k)
-      offsets[k] = (std::clamp(x + k - kHalf, 0, width - 1) - x) * std::ptrdiff_t{candidates};
-    return offsets;
-  };
-  const int begin = std::min(kHalf, width), end = std::max(begin, width - kHalf);
-  for (int x = 0; x < begin; ++x) choose_at(x, offsets_at(x));
-  for (int x = end; x < width; ++x) choose_at(x, offsets_at(x));
-  const Offsets inside = offsets_at(kHalf);
-  for (int x = begin; x < end; ++x) choose_at(x, inside);
+  const LocalCosts costs(cost, width, candidates);
+  for (int begin = 0; begin < width; begin += kChunk) {
+    const int count = std::min(kChunk, width - begin);
+    std::array<std::uint32_t, kChunk> first_four;
+    std::array<std::uint8_t, kChunk> fifth;
+    for (int i = 0; i < count; ++i) {
+      const Bytes five = costs.about(begin + i, row.candidate[begin + i]);
+      first_four[i] = static_cast<std::uint32_t>(five);
+      fifth[i] = static_cast<std::uint8_t>(five >> sizeof(std::uint32_t) * kByte);
+    }
+    fastest_row_kernels().choose({first_four.data(), fifth.data()}, count,
+                                 {.candidate = row.candidate.data() + begin,
+                                  .before = row.local_before.data() + begin,
+                                  .here = row.local.data() + begin,
+                                  .after = row.local_after.data() + begin});
+  }
 }
 
 }  // namespace stereovox
