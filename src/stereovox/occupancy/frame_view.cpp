@@ -80,11 +80,26 @@ std::optional<Segment> within_heights(const FrameView& frame, const PointMeasure
 
 }  // namespace
 
+OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera& camera) {
+  constexpr double kLeastDepth_m = 8.0, kLeastClearing_m = 5.0;
+  constexpr double kLeastOfSurface_px = 8.0, kLeastOfFreeSpace_px = 13.0;
+  const double sigma_px = params.error_model.min_sigma_disparity_px;
+  const double exact_m = std::sqrt(max_sigma_m(params) * camera.depth_m(sigma_px));
+  OccupancyParams ranged = params;
+  if (params.max_depth_m == 0.0)
+    ranged.max_depth_m = std::max(kLeastDepth_m, camera.depth_m(kLeastOfSurface_px));
+  if (params.max_clearing_m == 0.0)
+    ranged.max_clearing_m =
+        std::max(kLeastClearing_m, std::min(camera.depth_m(kLeastOfFreeSpace_px), exact_m));
+  return ranged;
+}
+
 SamplingSteps sampling_steps(const OccupancyParams& params, const RectifiedCamera& camera) {
   // The edge of a table or a leg is a few pixels wide, however large the voxels are.
   constexpr int kCoarsestSurface_px = 3;
   constexpr double kCoarsestRay_px = 3 * kCoarsestSurface_px;
-  const double voxel_px = camera.pinhole.fx_px * params.voxel_size_m / params.max_clearing_m;
+  const double voxel_px =
+      camera.pinhole.fx_px * params.voxel_size_m / with_ranges(params, camera).max_clearing_m;
   const int auto_ray_px =
       std::max(1, static_cast<int>(std::ceil(std::min(voxel_px, kCoarsestRay_px))));
   const int ray_px = params.ray_step_px > 0 ? params.ray_step_px : auto_ray_px;
@@ -107,10 +122,11 @@ FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& cam
   if (params.voxel_size_m != map.voxel_size_m())
     throw Error(fmt::format("voxel size of the map is {} m, of the configuration {} m",
                             map.voxel_size_m(), params.voxel_size_m));
-  check_reach(T_world_camera, params, map.voxel_size_m());
+  const OccupancyParams ranged = with_ranges(params, camera);
+  check_reach(T_world_camera, ranged, map.voxel_size_m());
   return {.disparity = disparity,
           .camera = camera,
-          .params = params,
+          .params = ranged,
           .steps = sampling_steps(params, camera),
           .profile = profile_of(params.update),
           .T_world_camera = T_world_camera,

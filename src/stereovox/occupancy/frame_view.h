@@ -22,6 +22,12 @@ struct SamplingSteps {
   int surface_px = 1, ray_px = 1;
 };
 
+// The parameters with the ranges set that they leave open (0). Cameras whose lines of sight part
+// widely measure farther: such a range ends where disparities become small (8 px for surfaces, 13
+// for free space), and free space where errors exceed max_sigma_half_voxels besides. The ranges for
+// a small robot's camera indoors, 8 and 5 m, are the least.
+OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera& camera);
+
 // As the parameters say, or where they leave it open (0): rays about one voxel apart at the
 // farthest distance that they clear, and surfaces read twice as densely, but not so sparsely that
 // thin things are missed.
@@ -30,11 +36,11 @@ SamplingSteps sampling_steps(const OccupancyParams& params, const RectifiedCamer
 // The rows of an image that are read with these steps.
 std::vector<int> rows_read(const SamplingSteps& steps, int height);
 
-// Refers to what it was made from.
+// Refers to the image and the camera that it was made from.
 struct FrameView {
   const DisparityImage& disparity;
   const RectifiedCamera& camera;
-  const OccupancyParams& params;
+  OccupancyParams params;  // with_ranges
   SamplingSteps steps;
   // Of the update rule; nullptr when surfaces are observed by params.observation.
   const SurfaceProfile* profile = nullptr;

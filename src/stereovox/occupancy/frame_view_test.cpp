@@ -18,6 +18,44 @@ OccupancyParams params_with_steps(int pixel_step, int ray_step_px) {
   return params;
 }
 
+// --- Ranges that are left open. ---
+
+OccupancyParams open_ranges(double voxel_size_m) {
+  OccupancyParams params;
+  params.voxel_size_m = voxel_size_m;
+  params.max_sigma_half_voxels = 4.0;
+  params.error_model.min_sigma_disparity_px = 0.25;
+  return params;
+}
+
+TEST(Ranges, OfASmallRigAreThoseOfRooms) {
+  for (const double voxel_size_m : {0.05, 0.25}) {
+    const OccupancyParams ranged =
+        with_ranges(open_ranges(voxel_size_m), camera_with_focal_length(525));
+    EXPECT_EQ(ranged.max_depth_m, 8.0);
+    EXPECT_EQ(ranged.max_clearing_m, 5.0);
+  }
+}
+
+TEST(Ranges, OfAWideRigEndWhereDisparitiesAreSmall) {
+  const RectifiedCamera car = {{1226, 370, 707.0, 707.0, 613.0, 185.0}, 0.54};
+  const OccupancyParams coarse = with_ranges(open_ranges(0.5), car);
+  EXPECT_DOUBLE_EQ(car.disparity_px(coarse.max_depth_m), 8.0);
+  EXPECT_DOUBLE_EQ(car.disparity_px(coarse.max_clearing_m), 13.0);
+}
+
+TEST(Ranges, OfFreeSpaceEndWhereTheErrorIsTwoVoxels) {
+  const RectifiedCamera car = {{1226, 370, 707.0, 707.0, 613.0, 185.0}, 0.54};
+  const double range_m = with_ranges(open_ranges(0.05), car).max_clearing_m;
+  EXPECT_NEAR(range_m * range_m * 0.25 / (707.0 * 0.54), 2 * 0.05, 1e-12);
+}
+
+TEST(Ranges, StayAsGiven) {
+  const OccupancyParams given =
+      with_ranges(params_with_steps(0, 0), camera_with_focal_length(5000));
+  EXPECT_EQ(given.max_clearing_m, 5.0);
+}
+
 TEST(SamplingSteps, AutomaticRaysAreAVoxelApartWhereTheyEndAndSurfacesTwiceAsDense) {
   const SamplingSteps fine = sampling_steps(params_with_steps(0, 0), camera_with_focal_length(525));
   EXPECT_EQ(fine.ray_px, 6) << "0.05 m at 5 m are 5.25 px";

@@ -35,8 +35,8 @@ struct OccupancyParams {
   int pixel_step = 0;
   int ray_step_px = 0;
   double min_depth_m = 0.3;
-  double max_depth_m = 8.0;
-  double max_clearing_m = 5.0;
+  double max_depth_m = 0.0;     // 0: see with_ranges
+  double max_clearing_m = 0.0;  // likewise
   double max_sigma_half_voxels = 3.0;
   double min_height_m = -0.2;
   double max_height_m = 2.0;
