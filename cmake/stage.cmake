@@ -40,6 +40,16 @@ function(stereovox_precompile_headers target owner)
   endif()
 endfunction()
 
+# Several files at once, which parses what they share once: test programs always, libraries only
+# under a sanitizer, so that other builds see that each file includes what it needs. Plain versions
+# of kernels have the names of the fast ones, so they stay alone.
+function(stereovox_compile_together target)
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "_reference\\.cpp$|direct_fit\\.cpp$")
+  set_source_files_properties(${sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
+endfunction()
+
 function(stereovox_stage name)
   cmake_parse_arguments(STAGE "" "" "SOURCES;TESTS;LINKS;PRIVATE_LINKS" ${ARGN})
   set(target stereovox_${name})
@@ -51,13 +61,26 @@ function(stereovox_stage name)
   target_link_libraries(${target} PUBLIC stereovox_options ${STAGE_LINKS}
     PRIVATE ${STAGE_PRIVATE_LINKS} $<BUILD_INTERFACE:stereovox_build_options>)
   stereovox_precompile_headers(${target} stereovox_core)
+  if(STEREOVOX_SANITIZER)
+    stereovox_compile_together(${target})
+  endif()
   set_property(GLOBAL APPEND PROPERTY STEREOVOX_STAGES ${target})
   if(STEREOVOX_TESTS AND STAGE_TESTS)
     stereovox_test(${name}_test SOURCES ${STAGE_TESTS} LINKS ${target} ${STAGE_PRIVATE_LINKS})
   endif()
 endfunction()
 
-# stereovox_test(<program> SOURCES ... [LINKS ...]): a GoogleTest program; every TEST is a ctest entry.
+# Two ctest entries, each of which runs every second TEST: a sanitizer takes long to start.
+function(stereovox_add_halves program)
+  foreach(half 0 1)
+    add_test(NAME ${program}_${half} COMMAND ${program})
+    set_tests_properties(${program}_${half} PROPERTIES
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${half}")
+  endforeach()
+endfunction()
+
+# stereovox_test(<program> SOURCES ... [LINKS ...]): a GoogleTest program; every TEST is a ctest entry,
+# but not under a sanitizer.
 function(stereovox_test program)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${program} ${TEST_SOURCES})
@@ -65,5 +88,10 @@ function(stereovox_test program)
   target_compile_definitions(${program} PRIVATE
     STEREOVOX_SOURCE_DIR="${PROJECT_SOURCE_DIR}" STEREOVOX_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
   stereovox_precompile_headers(${program} core_test <gmock/gmock.h> <gtest/gtest.h>)
-  gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60)
+  stereovox_compile_together(${program})
+  if(STEREOVOX_SANITIZER)
+    stereovox_add_halves(${program})
+  else()
+    gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60)
+  endif()
 endfunction()

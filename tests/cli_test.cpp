@@ -14,8 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
-
 bool is_empty_or_missing(const fs::path& folder) {
   return !fs::exists(folder) || fs::is_empty(folder);
 }

@@ -21,8 +21,6 @@ namespace fs = std::filesystem;
 
 const fs::path kDemo = fs::path(STEREOVOX_SOURCE_DIR) / "data" / "office_demo";
 
-std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
-
 nlohmann::json json_of(const fs::path& path) { return nlohmann::json::parse(text_of(path)); }
 
 // Cells of `map` with `label` that the true plan knows, and how many of them are right there within

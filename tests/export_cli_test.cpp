@@ -16,8 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
-
 class Export : public testing::Test {
  protected:
   void SetUp() override {

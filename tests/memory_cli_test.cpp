@@ -18,8 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
-
 TEST(MemoryLimit, ChangesNoByteOfTheResults) {
   const fs::path data = office_extract("data", 10), out = empty_folder("out");
   ASSERT_EQ(run_program("run " + quoted(data) + " -q -o " + quoted(out / "all")).exit_code, 0);

@@ -17,6 +17,9 @@ ProgramResult run_program(const std::string& arguments);
 // The same after a command of the shell that sets limits.
 ProgramResult run_under(const std::string& setup, const std::string& arguments);
 
+// For the shell.
+inline std::string quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
+
 // A new empty folder of this name.
 std::filesystem::path empty_folder(const std::string& name);
 

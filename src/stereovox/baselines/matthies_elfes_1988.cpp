@@ -12,7 +12,7 @@
 namespace stereovox {
 namespace {
 
-constexpr double kNegligible_sigmas = 8.0;  // both tails are below 1e-14 there
+constexpr double kTail_sigmas = 8.0;  // both tails are below 1e-14 there
 
 // Integral of Phi from minus infinity to t.
 double integral_of_cdf(double t) { return t * normal_cdf(t) + normal_density(t); }
@@ -23,8 +23,8 @@ void add_beam(const GridGeometry& geometry, const Ray2D& ray, const Beam& beam,
                                      params.occupied_probability};
   const double free_log_odds = log_odds_of(params.free_probability);
   const double size_m = geometry.cell_size_m;
-  const double free_until_m = beam.has_range ? beam.range_m - kNegligible_sigmas * beam.sigma_m
-                                             : beam.free_range_m + size_m;
+  const double free_until_m =
+      beam.has_range ? beam.range_m - kTail_sigmas * beam.sigma_m : beam.free_range_m + size_m;
   const double length_m =
       beam.has_range ? beam.range_m + params.cut_sigmas * beam.sigma_m : beam.free_range_m;
   for_each_beam_cell(geometry, ray, length_m, [&](const BeamCell& cell) {

@@ -6,11 +6,11 @@
 
 #include "stereovox/baselines/beam_cells.h"
 #include "stereovox/baselines/grid_values.h"
+#include "stereovox/core/angles.h"
 
 namespace stereovox {
 namespace {
 
-constexpr double kDegree_rad = M_PI / 180.0;
 constexpr double kMinBeamSum = 1e-6;  // a beam that hits nothing new has no sum to divide by
 
 double add_certainty(double old, double added) { return old + added - old * added; }

@@ -8,8 +8,9 @@
 namespace stereovox {
 namespace {
 
-constexpr double kCell_m = 0.25;
-const GridGeometry kGrid{.origin_m = {0, -0.5}, .cell_size_m = kCell_m, .width = 10, .height = 4};
+constexpr double kOctomapCell_m = 0.25;
+const GridGeometry kOctomapGrid{
+    .origin_m = {0, -0.5}, .cell_size_m = kOctomapCell_m, .width = 10, .height = 4};
 
 RectifiedCamera small_camera() {
   return {
@@ -33,14 +34,14 @@ DisparityImage wall_at(double depth_m) {
 
 OctomapBaselineParams test_params() {
   OctomapBaselineParams params;
-  params.voxel_size_m = kCell_m;
+  params.voxel_size_m = kOctomapCell_m;
   return params;
 }
 
 OccupancyGrid2D map_of(const OctomapBaselineParams& params, double depth_m) {
   OctomapBaseline octomap(params);
   octomap.integrate(wall_at(depth_m), small_camera(), forward_pose());
-  return octomap.map(kGrid, 0.0);
+  return octomap.map(kOctomapGrid, 0.0);
 }
 
 TEST(OctomapBaseline, WallIsOccupiedAndTheSpaceBeforeItFree) {
@@ -74,13 +75,13 @@ TEST(OctomapBaseline, MissingDisparitiesSayNothing) {
   OctomapBaseline octomap(test_params());
   octomap.integrate({cv::Mat1f(21, 21, 0.0F), cv::Mat1f(21, 21, 0.0F)}, small_camera(),
                     forward_pose());
-  EXPECT_EQ(drawing_of(octomap.map(kGrid, 0.0)), Drawing(4, "??????????"));
+  EXPECT_EQ(drawing_of(octomap.map(kOctomapGrid, 0.0)), Drawing(4, "??????????"));
 }
 
 TEST(OctomapBaseline, MergedVoxelsFillAllTheirCells) {
   OctomapBaselineParams params = test_params();
   const GridGeometry fine{
-      .origin_m = {0, -0.5}, .cell_size_m = 0.5 * kCell_m, .width = 20, .height = 8};
+      .origin_m = {0, -0.5}, .cell_size_m = 0.5 * kOctomapCell_m, .width = 20, .height = 8};
   OctomapBaseline octomap(params);
   octomap.integrate(wall_at(1.75), small_camera(), forward_pose());
   const Drawing map = drawing_of(octomap.map(fine, 0.0));

@@ -9,12 +9,12 @@
 #include <optional>
 #include <span>
 
+#include "stereovox/core/angles.h"
 #include "stereovox/core/error.h"
 
 namespace stereovox {
 namespace {
 
-constexpr double kDegree_rad = M_PI / 180.0;
 constexpr double kSpeckleSteps = 16.0;     // disparities are compared in sixteenths of a pixel
 constexpr float kSigmasOfTheFarthest = 3;  // three sigmas hold all but one in a thousand points
 // Reading window [R - sigma, R + 2 sigma] around a candidate R.

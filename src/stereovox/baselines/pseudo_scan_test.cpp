@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "stereovox/core/angles.h"
 #include "stereovox/core/error.h"
 
 namespace stereovox {
 namespace {
 
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 constexpr double kCameraHeight_m = 0.6;
 constexpr double kSigma_px = 0.25;
 

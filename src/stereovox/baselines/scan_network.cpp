@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "stereovox/baselines/scan_network_weights.h"
+#include "stereovox/core/angles.h"
 #include "stereovox/core/error.h"
 #include "stereovox/io/atomic_file.h"
 #include "stereovox/io/text_file.h"
@@ -14,7 +15,6 @@
 namespace stereovox {
 namespace {
 
-constexpr double kDegree_rad = M_PI / 180.0;
 constexpr std::size_t kPlaceFeatures = 3;  // distance, sine and cosine of the bearing
 constexpr std::size_t kNearestBeams = 4;
 constexpr double kNearest_rad = 4.0 * kDegree_rad;

@@ -5,13 +5,12 @@
 #include <fstream>
 #include <numbers>
 
+#include "stereovox/core/angles.h"
 #include "stereovox/core/error.h"
 #include "stereovox/io/temporary_folder.h"
 
 namespace stereovox {
 namespace {
-
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 PseudoScan scan_of_beams() {
   PseudoScan scan{0, {1.0, 2.0}, 0.5 * std::numbers::pi, {}};

@@ -9,7 +9,7 @@
 namespace stereovox {
 namespace {
 
-constexpr double kCell_m = 0.25;
+constexpr double kTrainingCell_m = 0.25;
 
 // A camera at the left end of a corridor that looks to the right, at a wall.
 const Drawing kCorridor = {
@@ -22,12 +22,12 @@ const Drawing kCorridor = {
 
 PseudoScan corridor_scan() {
   RandomEngine random(1);
-  return scan_in(drawn_grid(kCorridor, kCell_m), {0.4, 0.6}, 0.0, random);
+  return scan_in(drawn_grid(kCorridor, kTrainingCell_m), {0.4, 0.6}, 0.0, random);
 }
 
 TEST(CollectSamples, TakesEquallyManyOfEachKind) {
   const auto samples =
-      collect_samples(corridor_scan(), drawn_grid(kCorridor, kCell_m), {.max_per_kind = 2});
+      collect_samples(corridor_scan(), drawn_grid(kCorridor, kTrainingCell_m), {.max_per_kind = 2});
   ASSERT_EQ(samples.size(), 6U);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(samples[i].target, 1.0);
@@ -39,8 +39,9 @@ TEST(CollectSamples, TakesEquallyManyOfEachKind) {
 TEST(CollectSamples, SameSeedDrawsTheSameSamples) {
   const auto distances = [](std::uint64_t seed) {
     std::vector<double> list;
-    for (const ScanSample& sample : collect_samples(corridor_scan(), drawn_grid(kCorridor, kCell_m),
-                                                    {.max_per_kind = 2, .seed = seed}))
+    for (const ScanSample& sample :
+         collect_samples(corridor_scan(), drawn_grid(kCorridor, kTrainingCell_m),
+                         {.max_per_kind = 2, .seed = seed}))
       list.push_back(sample.features[0]);
     return list;
   };
@@ -49,7 +50,7 @@ TEST(CollectSamples, SameSeedDrawsTheSameSamples) {
 }
 
 TEST(CollectSamples, GivesNothingWhenAKindIsMissing) {
-  const OccupancyGrid2D open = drawn_grid(Drawing(8, std::string(8, '.')), kCell_m);
+  const OccupancyGrid2D open = drawn_grid(Drawing(8, std::string(8, '.')), kTrainingCell_m);
   EXPECT_TRUE(collect_samples(corridor_scan(), open, {}).empty());
 }
 
@@ -98,7 +99,7 @@ TEST(Training, LossOnRoomsNotSeenFalls) {
     RandomEngine random(seed);
     std::vector<ScanSample> samples;
     for (int i = 0; i < rooms; ++i) {
-      const OccupancyGrid2D room = random_room(random, kCell_m);
+      const OccupancyGrid2D room = random_room(random, kTrainingCell_m);
       for (const PseudoScan& scan : random_scans(room, 5, random)) {
         const auto drawn = collect_samples(scan, room, {});
         samples.insert(samples.end(), drawn.begin(), drawn.end());

@@ -7,11 +7,10 @@
 #include "stereovox/baselines/beam_cells.h"
 #include "stereovox/baselines/grid_values.h"
 #include "stereovox/baselines/normal_distribution.h"
+#include "stereovox/core/angles.h"
 
 namespace stereovox {
 namespace {
-
-constexpr double kDegree_rad = M_PI / 180.0;
 
 double density(double x_m, double mean_m, double sigma_m) {
   return normal_density((x_m - mean_m) / sigma_m) / sigma_m;

@@ -22,7 +22,7 @@ void require_same_size(cv::Size expected, cv::Size found, const char* what) {
                             found.height, expected.width, expected.height));
 }
 
-struct Sums {
+struct ErrorSums {
   int counted = 0, valid = 0, d1 = 0;
   std::array<int, kBadThresholds_px.size()> bad = {};
   double absolute_px = 0, squared_px2 = 0, signed_px = 0;
@@ -38,8 +38,9 @@ struct Sums {
   }
 };
 
-Sums sum_errors(const cv::Mat1f& truth_px, const cv::Mat1f& estimate_px, const cv::Mat1b& counted) {
-  Sums sums;
+ErrorSums sum_errors(const cv::Mat1f& truth_px, const cv::Mat1f& estimate_px,
+                     const cv::Mat1b& counted) {
+  ErrorSums sums;
   for (int v = 0; v < truth_px.rows; ++v)
     for (int u = 0; u < truth_px.cols; ++u) {
       if (!is_disparity(truth_px(v, u)) || (!counted.empty() && counted(v, u) == 0)) continue;
@@ -50,7 +51,7 @@ Sums sum_errors(const cv::Mat1f& truth_px, const cv::Mat1f& estimate_px, const c
 }
 
 // Shares of `total` pixels when `extra` pixels are bad besides the summed ones.
-BadPixels shares(const Sums& sums, int extra, int total) {
+BadPixels shares(const ErrorSums& sums, int extra, int total) {
   BadPixels result;
   if (total == 0) return result;
   const auto percent = [&](int bad) { return 100.0 * (bad + extra) / total; };
@@ -80,7 +81,7 @@ DisparityScore score_disparity(const DisparityImage& truth, const DisparityImage
                                const cv::Mat1b& counted) {
   require_same_size(truth.disparity_px.size(), estimate.disparity_px.size(), "estimate");
   if (!counted.empty()) require_same_size(truth.disparity_px.size(), counted.size(), "mask");
-  const Sums sums = sum_errors(truth.disparity_px, estimate.disparity_px, counted);
+  const ErrorSums sums = sum_errors(truth.disparity_px, estimate.disparity_px, counted);
   if (sums.counted == 0) throw Error("disparity: no pixel with truth to compare");
 
   DisparityScore score;

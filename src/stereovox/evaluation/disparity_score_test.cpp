@@ -19,11 +19,11 @@ DisparityImage row_of(const std::vector<float>& disparity_px) {
 }
 
 // Errors 0.4, 0.6, 1.5, 2.5, 4 (small against 100), 4 px; one missing pixel; two without truth.
-const DisparityImage kTruth = row_of({10, 10, 10, 10, 100, 20, 10, 0, kInfinity});
+const DisparityImage kTrueDisparity = row_of({10, 10, 10, 10, 100, 20, 10, 0, kInfinity});
 const DisparityImage kEstimate = row_of({10.4F, 9.4F, 11.5F, 7.5F, 104, 24, 0, 7, 7});
 
 TEST(DisparityScore, CountsMissingPixelsAsBad) {
-  const DisparityScore s = score_disparity(kTruth, kEstimate);
+  const DisparityScore s = score_disparity(kTrueDisparity, kEstimate);
   EXPECT_EQ(s.counted_px, 7);
   EXPECT_DOUBLE_EQ(s.density_percent, 100.0 * 6 / 7);
   EXPECT_DOUBLE_EQ(s.missing_is_bad.bad_percent[0], 100.0 * 6 / 7);
@@ -34,14 +34,14 @@ TEST(DisparityScore, CountsMissingPixelsAsBad) {
 }
 
 TEST(DisparityScore, OrLeavesThemOut) {
-  const DisparityScore s = score_disparity(kTruth, kEstimate);
+  const DisparityScore s = score_disparity(kTrueDisparity, kEstimate);
   EXPECT_DOUBLE_EQ(s.valid_only.bad_percent[0], 100.0 * 5 / 6);
   EXPECT_DOUBLE_EQ(s.valid_only.bad_percent[3], 100.0 * 2 / 6);
   EXPECT_DOUBLE_EQ(s.valid_only.d1_percent, 100.0 * 1 / 6);
 }
 
 TEST(DisparityScore, AveragesTheErrorsOfValidPixels) {
-  const DisparityScore s = score_disparity(kTruth, kEstimate);
+  const DisparityScore s = score_disparity(kTrueDisparity, kEstimate);
   EXPECT_NEAR(s.mae_px, (0.4 + 0.6 + 1.5 + 2.5 + 4 + 4) / 6, 1e-6);
   EXPECT_NEAR(s.rms_px, std::sqrt((0.16 + 0.36 + 2.25 + 6.25 + 16 + 16) / 6), 1e-6);
   EXPECT_NEAR(s.bias_px, (0.4 - 0.6 + 1.5 - 2.5 + 4 + 4) / 6, 1e-6);
@@ -50,7 +50,7 @@ TEST(DisparityScore, AveragesTheErrorsOfValidPixels) {
 TEST(DisparityScore, TheMaskRestrictsWhatIsCounted) {
   cv::Mat1b counted(1, 9, static_cast<uchar>(0));
   counted(0, 1) = 255;
-  const DisparityScore s = score_disparity(kTruth, kEstimate, counted);
+  const DisparityScore s = score_disparity(kTrueDisparity, kEstimate, counted);
   EXPECT_EQ(s.counted_px, 1);
   EXPECT_NEAR(s.mae_px, 0.6, 1e-6);
 }

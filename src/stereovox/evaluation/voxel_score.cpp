@@ -14,7 +14,7 @@ namespace {
 
 using Voxels = std::vector<Eigen::Vector3i>;
 
-constexpr double kSizeTolerance = 1e-6;  // relative
+constexpr double kVoxelSizeTolerance = 1e-6;  // relative
 
 // What a map says of a voxel.
 class Knowledge {
@@ -185,7 +185,7 @@ void VoxelScoreParams::describe(ParameterList& list) {
 VoxelScore score_voxels(const VoxelMap& ideal, const VoxelMap& generated,
                         const VoxelScoreParams& params) {
   const double size_m = ideal.voxel_size_m();
-  if (std::abs(generated.voxel_size_m() - size_m) > kSizeTolerance * size_m)
+  if (std::abs(generated.voxel_size_m() - size_m) > kVoxelSizeTolerance * size_m)
     throw Error(fmt::format("voxel maps: voxels of {:.9g} m and of {:.9g} m cannot be compared",
                             size_m, generated.voxel_size_m()));
   const Knowledge truth(ideal, 1, params.threshold);

@@ -70,7 +70,7 @@ void write_doorways(const std::filesystem::path& path, const std::vector<Doorway
     yaml << YAML::EndMap;
   }
   yaml << YAML::EndSeq << YAML::EndMap;
-  write_file_atomically(path, [&](std::ostream& out) { out << yaml.c_str() << "\n"; });
+  write_text_atomically(path, std::string(yaml.c_str()) + "\n");
 }
 
 }  // namespace stereovox

@@ -30,7 +30,7 @@ constexpr const char *kKeyFile = "key.txt", *kEstimatedFile = "estimated.tum";
 constexpr const char* kRenderedFile = "rendered.txt";
 
 template <class Params>
-std::string text_of(Params params, const std::string& only_sections = "") {
+std::string key_of(Params params, const std::string& only_sections = "") {
   std::string text;
   const ParameterList list = parameters_of(params);
   for (const Parameter& p : list.parameters())
@@ -38,10 +38,6 @@ std::string text_of(Params params, const std::string& only_sections = "") {
         only_sections.find(p.path.substr(0, p.path.find('.')) + ";") != std::string::npos)
       text += fmt::format("{}={}\n", p.path, p.get());
   return text;
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-  write_file_atomically(path, [&](std::ostream& out) { out << text; });
 }
 
 // The folder for a key; the key is written into it, so that two with one name are noticed.
@@ -52,7 +48,7 @@ fs::path keyed_folder(const fs::path& parent, const std::string& name, const std
   if (error)
     throw ResourceError(fmt::format("{}: cannot be made ({})", folder.string(), error.message()));
   const fs::path file = folder / kKeyFile;
-  if (!fs::exists(file)) write_text(file, key);
+  if (!fs::exists(file)) write_text_atomically(file, key);
   if (read_file(file, kMaxKeyBytes) != key)
     throw Error(file.string() + ": belongs to other data with the same name; remove its folder");
   return folder;
@@ -60,12 +56,12 @@ fs::path keyed_folder(const fs::path& parent, const std::string& name, const std
 
 std::string render_key(const RecordingRequest& request) {
   return fmt::format("renderer {}\ndrive={}\n{}{}", kRendererVersion, request.drive,
-                     text_of(request.simulation), read_file(request.world, kMaxKeyBytes));
+                     key_of(request.simulation), read_file(request.world, kMaxKeyBytes));
 }
 
 std::string match_key(const RecordingRequest& request) {
   return fmt::format("build {}\n{}", request.build,
-                     text_of(request.pipeline, "rectification;matcher;odometry;refine;"));
+                     key_of(request.pipeline, "rectification;matcher;odometry;refine;"));
 }
 
 fs::path disparity_path(const fs::path& folder, int frame) {
@@ -87,7 +83,7 @@ bool render_into(const fs::path& folder, const Simulation& simulation,
     if (done % step == 0) progress.say(fmt::format("rendered {} of {} pairs", done, all));
   };
   if (write_data_set(folder, simulation, options) < frames) return false;
-  write_text(folder / kRenderedFile, fmt::format("{} pairs\n", frames));
+  write_text_atomically(folder / kRenderedFile, fmt::format("{} pairs\n", frames));
   return true;
 }
 

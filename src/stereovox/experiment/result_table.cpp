@@ -150,7 +150,7 @@ void write_rows(const std::filesystem::path& path, const std::string& key,
                 std::span<const ResultRow> rows) {
   nlohmann::json json{{"key", key}, {"rows", nlohmann::json::array()}};
   for (const ResultRow& row : rows) json["rows"].push_back(to_json(row));
-  write_file_atomically(path, [&](std::ostream& out) { out << json.dump(1) << "\n"; });
+  write_text_atomically(path, json.dump(1) + "\n");
 }
 
 std::optional<std::vector<ResultRow>> read_rows(const std::filesystem::path& path,

@@ -20,10 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr int kMapsInARow = 4;
 
-void write_text(const fs::path& path, const std::string& text) {
-  write_file_atomically(path, [&](std::ostream& out) { out << text; });
-}
-
 const std::string& name_of(PoseSource poses) {
   return names_of(poses)[static_cast<std::size_t>(poses)];
 }
@@ -122,9 +118,9 @@ void write_report(const ExperimentConfig& config, std::span<const ResultRow> row
   for (const MethodGroup& group : config.groups)
     report += group_report(config, group, rows, output);
   write_csv(output / "results.csv", rows);
-  write_text(output / "experiment.yaml", config.source_text);
-  write_text(output / "parameters.txt", parameters_text(config));
-  write_text(output / "report.md", report);
+  write_text_atomically(output / "experiment.yaml", config.source_text);
+  write_text_atomically(output / "parameters.txt", parameters_text(config));
+  write_text_atomically(output / "report.md", report);
 }
 
 }  // namespace stereovox

@@ -128,4 +128,8 @@ void write_file_atomically(const fs::path& path, const std::function<void(std::o
   sync_folder_of(target);
 }
 
+void write_text_atomically(const std::filesystem::path& path, const std::string& text) {
+  write_file_atomically(path, [&](std::ostream& out) { out << text; });
+}
+
 }  // namespace stereovox

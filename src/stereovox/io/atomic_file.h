@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <ostream>
+#include <string>
 
 namespace stereovox {
 
@@ -13,5 +14,6 @@ namespace stereovox {
 // stream is binary. A symbolic link at `path` is followed.
 void write_file_atomically(const std::filesystem::path& path,
                            const std::function<void(std::ostream&)>& write);
+void write_text_atomically(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace stereovox

@@ -14,7 +14,7 @@
 namespace stereovox {
 namespace {
 
-constexpr std::int64_t kMaxPixels = 64LL << 20;
+constexpr std::int64_t kMaxPfmPixels = 64LL << 20;
 constexpr std::uint64_t kMaxHeaderBytes = 4096;
 constexpr std::string_view kBlanks = " \t\r\n";
 
@@ -37,7 +37,7 @@ float float_at(const char* bytes, bool is_little_endian) {
 }  // namespace
 
 cv::Mat1f read_pfm(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path, kMaxPixels * sizeof(float) + kMaxHeaderBytes);
+  const std::string bytes = read_file(path, kMaxPfmPixels * sizeof(float) + kMaxHeaderBytes);
   const auto fail = [&](const std::string& what) { return Error(path.string() + ": " + what); };
   std::string_view rest = bytes;
   if (take_word(rest) != "Pf") throw fail("is not a one-channel PFM file");
@@ -45,7 +45,7 @@ cv::Mat1f read_pfm(const std::filesystem::path& path) {
   const std::int64_t width = parse_integer(width_text).value_or(0);
   const std::int64_t height = parse_integer(height_text).value_or(0);
   const double scale = parse_number(take_word(rest)).value_or(0.0);
-  if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels / width)
+  if (width < 1 || height < 1 || width > kMaxPfmPixels || height > kMaxPfmPixels / width)
     throw fail(fmt::format("size is {} x {}, at most 64 megapixels are read", in_quotes(width_text),
                            in_quotes(height_text)));
   if (!std::isfinite(scale) || scale == 0.0) throw fail("its scale is no number or zero");

@@ -7,12 +7,12 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "stereovox/core/angles.h"
 #include "stereovox/core/grid_geometry.h"
 
 namespace stereovox {
 namespace {
 
-constexpr double kDegree_rad = M_PI / 180.0;
 constexpr double kTopHeight_m = 2.0;
 constexpr int kMargin_px = 10;
 // Voxels look like cubes when their neighbours differ a little in brightness.

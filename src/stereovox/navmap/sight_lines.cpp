@@ -10,7 +10,7 @@
 namespace stereovox {
 namespace {
 
-constexpr std::string_view kMagic = "sight lines 1\n";
+constexpr std::string_view kSightLinesMagic = "sight lines 1\n";
 
 using Cells = std::vector<Eigen::Vector2i>;
 
@@ -147,16 +147,16 @@ void SightLines::observe(const VoxelMap& map, const Eigen::Vector2d& robot_xy_wo
 }
 
 std::string to_bytes(const SightLines& sight_lines) {
-  std::string bytes(kMagic);
+  std::string bytes(kSightLinesMagic);
   append_bytes(sight_lines.free_cells(), bytes);
   append_bytes(sight_lines.held_cells(), bytes);
   return bytes;
 }
 
 SightLines sight_lines_from_bytes(std::string_view bytes, const std::string& source) {
-  if (!bytes.starts_with(kMagic))
+  if (!bytes.starts_with(kSightLinesMagic))
     throw Error(fmt::format("{}: the sight lines do not begin with 'sight lines 1'", source));
-  bytes.remove_prefix(kMagic.size());
+  bytes.remove_prefix(kSightLinesMagic.size());
   SightLines sight_lines;
   sight_lines.free_ = take_cell_set(bytes, source);
   sight_lines.held_ = take_cell_set(bytes, source);

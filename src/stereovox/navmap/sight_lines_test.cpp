@@ -191,7 +191,7 @@ TEST(SightLines, SurviveTheirBytes) {
   EXPECT_EQ(sight_lines_from_bytes(to_bytes(SightLines{}), "map.svx"), SightLines{});
 }
 
-std::string complaint_about(const std::string& bytes) {
+std::string complaint_about_lines(const std::string& bytes) {
   try {
     sight_lines_from_bytes(bytes, "map.svx");
   } catch (const Error& error) {
@@ -202,16 +202,17 @@ std::string complaint_about(const std::string& bytes) {
 
 TEST(SightLines, DamagedBytesAreErrors) {
   const std::string good = to_bytes(some_sight_lines());
-  EXPECT_EQ(complaint_about(""), "map.svx: the sight lines do not begin with 'sight lines 1'");
-  EXPECT_EQ(complaint_about(good + "x"), "map.svx: 1 bytes too many after the sight lines");
+  EXPECT_EQ(complaint_about_lines(""),
+            "map.svx: the sight lines do not begin with 'sight lines 1'");
+  EXPECT_EQ(complaint_about_lines(good + "x"), "map.svx: 1 bytes too many after the sight lines");
   std::string many = good;
   many[15] = '\x7f';
-  EXPECT_EQ(complaint_about(many), "map.svx: a set of 32515 tiles is cut off");
+  EXPECT_EQ(complaint_about_lines(many), "map.svx: a set of 32515 tiles is cut off");
   std::string unordered = good;
   unordered[18] = '\x05';  // the first tile comes after the second
-  EXPECT_EQ(complaint_about(unordered), "map.svx: tile 1 of a set of cells is damaged");
+  EXPECT_EQ(complaint_about_lines(unordered), "map.svx: tile 1 of a set of cells is damaged");
   for (std::size_t length = 0; length < good.size(); ++length)
-    EXPECT_NE(complaint_about(good.substr(0, length)), "") << length;
+    EXPECT_NE(complaint_about_lines(good.substr(0, length)), "") << length;
 }
 
 }  // namespace

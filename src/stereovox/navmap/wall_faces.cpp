@@ -13,7 +13,7 @@
 namespace stereovox {
 namespace {
 
-constexpr std::string_view kMagic = "wall faces 1\n";
+constexpr std::string_view kWallFacesMagic = "wall faces 1\n";
 // With less the mean is not known to 3 mm, the bias aside.
 constexpr float kMinInformation_per_m2 = 1e5F;
 // With more, the newest points count as if there were only so many older ones.
@@ -86,7 +86,7 @@ std::optional<double> WallFaces::reach_m(const Eigen::Vector2i& cell,
 // Of each tile: i32 x, i32 y, one bit for each face that was seen, then mean and information of
 // those as f32.
 std::string to_bytes(const WallFaces& faces) {
-  std::string bytes(kMagic);
+  std::string bytes(kWallFacesMagic);
   append_number(bytes, static_cast<std::uint32_t>(faces.tiles_.size()));
   for (const auto& [index, tile] : faces.tiles_) {
     append_number(bytes, static_cast<std::int32_t>(index.first));
@@ -105,9 +105,9 @@ std::string to_bytes(const WallFaces& faces) {
 
 WallFaces wall_faces_from_bytes(std::string_view bytes, const std::string& source) {
   const auto damaged = [&] { return Error(source + ": the wall faces are damaged"); };
-  if (!bytes.starts_with(kMagic))
+  if (!bytes.starts_with(kWallFacesMagic))
     throw Error(source + ": the wall faces do not begin with 'wall faces 1'");
-  ByteReader reader(bytes.substr(kMagic.size()));
+  ByteReader reader(bytes.substr(kWallFacesMagic.size()));
   WallFaces faces;
   try {
     const auto count = reader.number<std::uint32_t>();

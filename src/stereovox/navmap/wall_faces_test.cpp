@@ -11,15 +11,15 @@
 namespace stereovox {
 namespace {
 
-constexpr double kCell_m = 0.25;
+constexpr double kFaceCell_m = 0.25;
 constexpr NavmapParams kParams{.sure_state = 0.75};
 const Eigen::Vector2i kTowardsCamera(-1, 0), kAway(1, 0);
 
 // A wall across the view of a camera at `camera_x_m`, `depth_m` away; each pixel has an error.
 WallFaces faces_of_wall(double camera_x_m, double depth_m, bool looks_back = false) {
   OccupancyParams occupancy;
-  occupancy.voxel_size_m = kCell_m;
-  VoxelMap map(kCell_m);
+  occupancy.voxel_size_m = kFaceCell_m;
+  VoxelMap map(kFaceCell_m);
   std::mt19937 random(3);
   std::normal_distribution<float> noise_px(0.0F, 0.3F);
   DisparityImage image = scene::wall_at(depth_m);

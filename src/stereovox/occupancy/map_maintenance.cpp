@@ -16,10 +16,6 @@
 namespace stereovox {
 namespace {
 
-bool contains(const VoxelBounds& box, const Eigen::Vector3i& voxel) {
-  return (voxel.array() >= box.min.array()).all() && (voxel.array() <= box.max.array()).all();
-}
-
 // The places of blocks, which may then be changed one by one.
 std::vector<Eigen::Vector3i> all_blocks(const VoxelMap& map) {
   std::vector<Eigen::Vector3i> places;
@@ -111,13 +107,13 @@ void clear_box(const VoxelBounds& box, VoxelMap& map) {
   for (const VoxelBlock* const block : map.blocks_in(box)) places.push_back(block->index);
   for (const Eigen::Vector3i& place : places)
     change_block(place, map,
-                 [&](const Eigen::Vector3i& voxel, Voxel&) { return !contains(box, voxel); });
+                 [&](const Eigen::Vector3i& voxel, Voxel&) { return !box.contains(voxel); });
 }
 
 void crop(const VoxelBounds& box, VoxelMap& map) {
   for (const Eigen::Vector3i& place : all_blocks(map))
     change_block(place, map,
-                 [&](const Eigen::Vector3i& voxel, Voxel&) { return contains(box, voxel); });
+                 [&](const Eigen::Vector3i& voxel, Voxel&) { return box.contains(voxel); });
 }
 
 void merge(const VoxelMap& other, const SE3& T_map_other, VoxelMap& map) {

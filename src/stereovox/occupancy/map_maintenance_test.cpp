@@ -10,6 +10,7 @@
 
 #include "stereovox/core/error.h"
 #include "stereovox/occupancy/integrate.h"
+#include "stereovox/occupancy/map_bytes_for_test.h"
 #include "stereovox/occupancy/scene_for_test.h"
 #include "stereovox/occupancy/voxel_map_file.h"
 
@@ -32,12 +33,6 @@ VoxelMap scattered_map(unsigned seed, int voxels) {
 
 bool is_inside(const VoxelBounds& box, const Eigen::Vector3i& v) {
   return (v.array() >= box.min.array()).all() && (v.array() <= box.max.array()).all();
-}
-
-std::string bytes_of(const VoxelMap& map) {
-  std::ostringstream out;
-  write_voxel_map(out, map);
-  return out.str();
 }
 
 constexpr int kEdge = 31;

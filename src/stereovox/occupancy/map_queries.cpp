@@ -111,10 +111,6 @@ void for_each_in_shell(const Eigen::Vector3i& center, int shell, Visit visit) {
     }
 }
 
-bool contains(const VoxelBounds& box, const Eigen::Vector3i& voxel) {
-  return (voxel.array() >= box.min.array()).all() && (voxel.array() <= box.max.array()).all();
-}
-
 }  // namespace
 
 MapQueries::MapQueries(const VoxelMap& map, const QueryParams& params)
@@ -234,7 +230,7 @@ std::vector<Eigen::Vector3i> frontier_voxels(const VoxelMap& map, const QueryPar
   for (const VoxelBlock* const block : map.blocks_in(box))
     for (int i = 0; i < kVoxelsPerBlock; ++i) {
       const Eigen::Vector3i voxel = voxel_at(block->index, i);
-      if (!contains(box, voxel) ||
+      if (!box.contains(voxel) ||
           queries.state_of(block->voxels[static_cast<std::size_t>(i)]) != VoxelState::free)
         continue;
       if (std::ranges::any_of(

@@ -9,7 +9,7 @@
 namespace stereovox {
 namespace {
 
-constexpr double kSize_m = 0.1;
+constexpr double kQuerySize_m = 0.1;
 
 void set(VoxelMap& map, const Eigen::Vector3i& voxel, float state, std::uint16_t observations = 5) {
   map.set(voxel, {.state = state, .last_seen_ms = 0, .observations = observations});
@@ -17,7 +17,7 @@ void set(VoxelMap& map, const Eigen::Vector3i& voxel, float state, std::uint16_t
 
 // A free corridor along x from voxel 0 to 19 that ends at an occupied voxel.
 VoxelMap corridor() {
-  VoxelMap map(kSize_m);
+  VoxelMap map(kQuerySize_m);
   for (int x = 0; x < 20; ++x) set(map, {x, 0, 0}, 0.0F);
   set(map, {20, 0, 0}, 0.9F);
   return map;
@@ -39,7 +39,7 @@ TEST(MapQueries, ManyStatesAskedAtOnceAreThoseOfEachAlone) {
   std::mt19937 random(9);
   std::uniform_int_distribution<int> place(-9, 9), count(1, 9);
   std::uniform_real_distribution<float> state(0.0F, 1.0F);
-  VoxelMap map(kSize_m);
+  VoxelMap map(kQuerySize_m);
   for (int i = 0; i < 5000; ++i)
     set(map, {place(random), place(random), place(random)}, state(random),
         static_cast<std::uint16_t>(count(random)));
@@ -51,7 +51,7 @@ TEST(MapQueries, ManyStatesAskedAtOnceAreThoseOfEachAlone) {
   const std::vector<VoxelState> states = queries.states_at(points);
   ASSERT_EQ(states.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Voxel voxel = map.at(voxel_index_of(kSize_m, points[i]));
+    const Voxel voxel = map.at(voxel_index_of(kQuerySize_m, points[i]));
     const VoxelState expected = voxel.observations < 3 ? VoxelState::unknown
                                 : voxel.state > 0.6F   ? VoxelState::occupied
                                                        : VoxelState::free;
@@ -99,8 +99,8 @@ double nearest_by_boxes(const std::vector<Eigen::Vector3i>& occupied, const Eige
                         const Eigen::Vector3d& way) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3i& voxel : occupied) {
-    const Eigen::Array3d low = voxel.cast<double>().array() * kSize_m - from.array();
-    const Eigen::Array3d a = low / way.array(), b = (low + kSize_m) / way.array();
+    const Eigen::Array3d low = voxel.cast<double>().array() * kQuerySize_m - from.array();
+    const Eigen::Array3d a = low / way.array(), b = (low + kQuerySize_m) / way.array();
     const double in = std::max(0.0, a.min(b).maxCoeff()), out = a.max(b).minCoeff();
     if (in < out) nearest = std::min(nearest, in);
   }
@@ -111,7 +111,7 @@ TEST(MapQueries, RandomRaysEndWhereTheNearestBoxBegins) {
   std::mt19937 random(4);
   std::uniform_int_distribution<int> place(-30, 30);
   std::normal_distribution<double> normal;
-  VoxelMap map(kSize_m);
+  VoxelMap map(kQuerySize_m);
   std::vector<Eigen::Vector3i> occupied;
   for (int i = 0; i < 1500; ++i) {
     occupied.emplace_back(place(random), place(random), place(random));
@@ -153,7 +153,7 @@ TEST(MapQueries, ABodyCollidesWithUnknownSpaceWhenItShall) {
 }
 
 VoxelMap scattered_map(std::mt19937& random, int voxels) {
-  VoxelMap map(kSize_m);
+  VoxelMap map(kQuerySize_m);
   std::uniform_int_distribution<int> place(-25, 25);
   for (int i = 0; i < voxels; ++i)
     set(map, {place(random), place(random), place(random)}, random() % 3 == 0 ? 0.9F : 0.1F);
@@ -168,8 +168,8 @@ std::optional<Obstacle> nearest_by_force(const VoxelMap& map, const Eigen::Vecto
     for (int i = 0; i < kVoxelsPerBlock; ++i) {
       const Eigen::Vector3i voxel = voxel_at(block->index, i);
       if (MapQueries(map).state_of(map.at(voxel)) != VoxelState::occupied) continue;
-      const Eigen::Vector3d low = voxel.cast<double>() * kSize_m;
-      const Eigen::Vector3d high = (low.array() + kSize_m).matrix();
+      const Eigen::Vector3d low = voxel.cast<double>() * kQuerySize_m;
+      const Eigen::Vector3d high = (low.array() + kQuerySize_m).matrix();
       const double distance_m = (p - p.cwiseMax(low).cwiseMin(high)).norm();
       if (distance_m > range_m) continue;
       if (!nearest || distance_m < nearest->distance_m ||

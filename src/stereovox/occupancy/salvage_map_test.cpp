@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "stereovox/core/error.h"
+#include "stereovox/occupancy/map_bytes_for_test.h"
 #include "stereovox/occupancy/tile_section.h"
 #include "stereovox/occupancy/voxel_map_file.h"
 
@@ -24,12 +25,6 @@ VoxelMap row_of_tiles(int tiles) {
     map.set({x * kTileSide * kBlockSide, 0, 0}, {.state = 0.1F * float(x), .observations = 1});
   map.attachments["note"] = "hello";
   return map;
-}
-
-std::string bytes_of(const VoxelMap& map) {
-  std::ostringstream out;
-  write_voxel_map(out, map);
-  return out.str();
 }
 
 SalvagedMap salvaged(const std::string& bytes) {

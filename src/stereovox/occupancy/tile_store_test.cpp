@@ -5,6 +5,7 @@
 
 #include "stereovox/core/error.h"
 #include "stereovox/io/temporary_folder.h"
+#include "stereovox/occupancy/map_bytes_for_test.h"
 #include "stereovox/occupancy/store_faults_for_test.h"
 #include "stereovox/occupancy/voxel_map.h"
 #include "stereovox/occupancy/voxel_map_file.h"
@@ -63,7 +64,7 @@ TEST_F(TileStoreTest, AFolderThatIsNotThereIsOneClearLine) {
 }
 
 // A map of tiles in a row with all voxels of one block known in each.
-VoxelMap row_of_tiles(int tiles) {
+VoxelMap row_of_full_tiles(int tiles) {
   VoxelMap map(0.05);
   for (int x = 0; x < tiles; ++x) {
     BlockVoxels& voxels = map.find_or_create_block({x * kTileSide, 0, 0}).voxels;
@@ -73,15 +74,9 @@ VoxelMap row_of_tiles(int tiles) {
   return map;
 }
 
-std::string bytes_of(const VoxelMap& map) {
-  std::ostringstream out;
-  write_voxel_map(out, map);
-  return out.str();
-}
-
 TEST_F(TileStoreTest, AMapWithTilesOutAnswersAsIfTheyWereIn) {
-  const VoxelMap all = row_of_tiles(50);
-  VoxelMap map = row_of_tiles(50);
+  const VoxelMap all = row_of_full_tiles(50);
+  VoxelMap map = row_of_full_tiles(50);
   map.use_store(folder_.path());
   map.keep_within(all.memory_bytes() / 2);
   EXPECT_LE(map.memory_bytes(), all.memory_bytes() / 2);
@@ -99,7 +94,7 @@ TEST_F(TileStoreTest, AMapWithTilesOutAnswersAsIfTheyWereIn) {
 }
 
 TEST_F(TileStoreTest, TilesThatChangedLongestAgoGoOutFirst) {
-  VoxelMap map = row_of_tiles(10);
+  VoxelMap map = row_of_full_tiles(10);
   map.use_store(folder_.path());
   map.find_or_create_block({0, 0, 0});
   const ChangeStamp stamp = map.change_stamp();
@@ -114,7 +109,7 @@ TEST_F(TileStoreTest, TilesThatChangedLongestAgoGoOutFirst) {
 }
 
 TEST_F(TileStoreTest, ATileThatDidNotChangeIsNotWrittenAgain) {
-  VoxelMap map = row_of_tiles(10);
+  VoxelMap map = row_of_full_tiles(10);
   map.use_store(folder_.path());
   map.keep_within(0);
   const std::string before = bytes_of(map);
@@ -126,7 +121,7 @@ TEST_F(TileStoreTest, ATileThatDidNotChangeIsNotWrittenAgain) {
 }
 
 TEST_F(TileStoreTest, ChangesSurviveManyJourneys) {
-  VoxelMap all = row_of_tiles(20), map = row_of_tiles(20);
+  VoxelMap all = row_of_full_tiles(20), map = row_of_full_tiles(20);
   map.use_store(folder_.path());
   for (int round = 0; round < 10; ++round) {
     for (VoxelMap* const m : {&all, &map}) {
@@ -139,7 +134,7 @@ TEST_F(TileStoreTest, ChangesSurviveManyJourneys) {
 }
 
 TEST_F(TileStoreTest, AFullDiskLosesNothing) {
-  VoxelMap map = row_of_tiles(20);
+  VoxelMap map = row_of_full_tiles(20);
   map.use_store(folder_.path());
   const std::string before = bytes_of(map);
   {
@@ -155,7 +150,7 @@ TEST_F(TileStoreTest, AFullDiskLosesNothing) {
 }
 
 TEST_F(TileStoreTest, ADamagedTileIsNoticedAndTheRestCanBeSaved) {
-  VoxelMap map = row_of_tiles(20);
+  VoxelMap map = row_of_full_tiles(20);
   map.use_store(folder_.path());
   map.keep_within(0);
   damage_nameless_file(folder_.path(), 70);

@@ -30,6 +30,10 @@ namespace stereovox {
 
 struct VoxelBounds {
   Eigen::Vector3i min, max;  // voxel indices, both included
+
+  bool contains(const Eigen::Vector3i& voxel) const {
+    return (voxel.array() >= min.array()).all() && (voxel.array() <= max.array()).all();
+  }
 };
 
 // Voxel i covers [i, i + 1) * voxel_size_m along each axis of the world. Blocks keep their address

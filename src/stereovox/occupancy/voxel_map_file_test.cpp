@@ -11,6 +11,7 @@
 #include "stereovox/core/error.h"
 #include "stereovox/occupancy/byte_buffer.h"
 #include "stereovox/occupancy/crc32c.h"
+#include "stereovox/occupancy/map_bytes_for_test.h"
 #include "stereovox/occupancy/tile_section.h"
 
 namespace stereovox {
@@ -40,12 +41,6 @@ VoxelMap random_map(int blocks, unsigned seed = 1) {
                         std::uint16_t(random())});
   }
   return map;
-}
-
-std::string bytes_of(const VoxelMap& map) {
-  std::ostringstream out;
-  write_voxel_map(out, map);
-  return out.str();
 }
 
 VoxelMap map_of(const std::string& bytes) {

@@ -11,7 +11,7 @@
 namespace stereovox {
 namespace {
 
-constexpr int kMaxIterations = 30;
+constexpr int kMaxDirectIterations = 30;
 // Steps below 10 micrometres and microradians change nothing.
 constexpr double kConverged = 1e-5;
 constexpr int kMinPixels = 50;
@@ -22,7 +22,7 @@ constexpr double kAlikePixels = 100.0;
 
 // False when the detail does not fix the motion.
 bool converge(DirectFitter& fitter, SE3& T_reference_camera) {
-  for (int i = 0; i < kMaxIterations; ++i) {
+  for (int i = 0; i < kMaxDirectIterations; ++i) {
     const DirectFit fit = fitter.at(T_reference_camera);
     if (std::min(fit.left.seen, fit.right.seen) < kMinPixels) return false;
     const Eigen::LDLT<Matrix6d> factors(fit.H);

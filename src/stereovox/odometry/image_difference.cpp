@@ -11,8 +11,8 @@
 namespace stereovox {
 namespace {
 
-constexpr double kMinDepth_m = 0.05;
-constexpr int kMinPixels = 50;
+constexpr double kNearestCompared_m = 0.05;
+constexpr int kMinComparedPixels = 50;
 // Rounding alone leaves a third of a step.
 constexpr double kMinSigma = 0.3;
 // Patterns as fine as the pixels differ between them by more than a motion changes: they are
@@ -59,7 +59,7 @@ class CurrentView {
       : camera_(camera), left_(blurred(pair.left)), right_(blurred(pair.right)) {}
 
   Seen at(const Eigen::Vector3d& p_camera) const {
-    if (p_camera.z() < kMinDepth_m) return {};
+    if (p_camera.z() < kNearestCompared_m) return {};
     const Eigen::Vector3d pixels = project_stereo(camera_, p_camera);
     return {brightness_at(left_, pixels[0], pixels[1]),
             brightness_at(right_, pixels[2], pixels[1])};
@@ -81,7 +81,7 @@ class TwoFits {
     ++count_;
   }
   double log_ratio() const {
-    if (count_ < kMinPixels) return 0.0;
+    if (count_ < kMinComparedPixels) return 0.0;
     const Eigen::Matrix<double, kTerms, 2> explained = Eigen::LDLT<decltype(H_)>(H_).solve(g_);
     const Eigen::Vector2d left = squares_ - explained.cwiseProduct(g_).colwise().sum().transpose();
     return std::log(sigma(left[0]) / sigma(left[1]));

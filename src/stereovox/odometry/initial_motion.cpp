@@ -9,7 +9,7 @@ namespace stereovox {
 namespace {
 
 constexpr int kMinPoints = 3;
-constexpr double kMinDepth_m = 0.05;
+constexpr double kNearestProjected_m = 0.05;
 // A corner is found to the pixel, and not at quite the same place of the surface each time.
 constexpr double kCornerSigma_px = 0.7;
 
@@ -93,8 +93,9 @@ std::vector<Eigen::Vector2d> expected_pixels(const RectifiedCamera& camera,
       continue;
     }
     const Eigen::Vector3d p = inverse(*T_reference_predicted) * position_of(camera, feature);
-    pixels.push_back(p.z() > kMinDepth_m ? project(camera.pinhole, p)
-                                         : Eigen::Vector2d::Constant(-camera.pinhole.width));
+    pixels.push_back(p.z() > kNearestProjected_m
+                         ? project(camera.pinhole, p)
+                         : Eigen::Vector2d::Constant(-camera.pinhole.width));
   }
   return pixels;
 }

@@ -7,7 +7,7 @@
 namespace stereovox {
 namespace {
 
-const RectifiedCamera kCamera{{640, 480, 400.0, 400.0, 319.5, 239.5}, 0.12};
+const RectifiedCamera kCamera400{{640, 480, 400.0, 400.0, 319.5, 239.5}, 0.12};
 constexpr double kBrick_m = 0.15;
 
 using Look = Eigen::Matrix<double, 121, 1>;
@@ -51,9 +51,9 @@ FeatureSet features_seen_from(const SE3& T_world_camera, std::span<const Landmar
   FeatureSet set;
   for (const Landmark& landmark : landmarks) {
     const Eigen::Vector3d p = inverse(T_world_camera) * landmark.p_world;
-    const Eigen::Vector2d pixel = project(kCamera.pinhole, p);
+    const Eigen::Vector2d pixel = project(kCamera400.pinhole, p);
     if (pixel.x() < 0 || pixel.x() > 639 || pixel.y() < 0 || pixel.y() > 479) continue;
-    set.features.push_back({pixel, kCamera.disparity_px(p.z()), 0.2});
+    set.features.push_back({pixel, kCamera400.disparity_px(p.z()), 0.2});
     set.descriptors.push_back(landmark.descriptor);
   }
   return set;
@@ -67,7 +67,7 @@ double error_m(const InitialMotion& motion, const SE3& truth) {
 
 InitialMotion find(const SE3& truth, const std::optional<SE3>& predicted) {
   const std::vector<Landmark> landmarks = scene();
-  return find_initial_motion(kCamera, features_seen_from(SE3{}, landmarks),
+  return find_initial_motion(kCamera400, features_seen_from(SE3{}, landmarks),
                              features_seen_from(truth, landmarks), predicted, {}, {});
 }
 
@@ -91,7 +91,7 @@ TEST(InitialMotionTest, NearAWrongPlaceItFindsTheMotionThatAPatternAllowsThere) 
   const std::vector<Landmark> landmarks = scene();
   const SE3 wrong = moved(0.1 + 2 * kBrick_m);
   const InitialMotion motion =
-      find_motion_near(kCamera, features_seen_from(SE3{}, landmarks),
+      find_motion_near(kCamera400, features_seen_from(SE3{}, landmarks),
                        features_seen_from(moved(0.1), landmarks), wrong, {}, {});
   EXPECT_LT(error_m(motion, wrong), 0.002);
 }

@@ -9,7 +9,7 @@
 namespace stereovox {
 namespace {
 
-constexpr double kMinDepth_m = 1e-3;
+constexpr double kBeforeCamera_m = 1e-3;
 constexpr int kMinInliers = 3;
 constexpr int kResidualsPerPoint = 3, kUnknowns = 6;
 constexpr int kMaxRejectionRounds = 4;
@@ -101,7 +101,7 @@ class Refinement {
     for (std::size_t i = 0; i < observations_.size(); ++i) {
       if (!estimate_.is_inlier[i]) continue;
       const Observation& o = observations_[i];
-      if ((T_camera_reference * o.p_reference).z() < kMinDepth_m) continue;
+      if ((T_camera_reference * o.p_reference).z() < kBeforeCamera_m) continue;
       equations.add(linearize(camera_, o, T_camera_reference), params_.huber_sigmas);
     }
     return equations;
@@ -122,8 +122,8 @@ class Refinement {
 
   double residual_px(const Observation& o, const SE3& T_camera_reference) const {
     const Eigen::Vector3d p = T_camera_reference * o.p_reference;
-    return p.z() < kMinDepth_m ? std::numeric_limits<double>::infinity()
-                               : (o.pixels - project_stereo(camera_, p)).norm();
+    return p.z() < kBeforeCamera_m ? std::numeric_limits<double>::infinity()
+                                   : (o.pixels - project_stereo(camera_, p)).norm();
   }
 
   // True when the set of inliers changed.

@@ -9,7 +9,7 @@
 namespace stereovox {
 namespace {
 
-const RectifiedCamera kCamera{{640, 480, 500.0, 500.0, 320.0, 240.0}, 0.12};
+const RectifiedCamera kCamera500{{640, 480, 500.0, 500.0, 320.0, 240.0}, 0.12};
 constexpr double kPixelSigma_px = 0.2, kDisparitySigma_px = 0.3;
 
 SE3 some_motion() {
@@ -32,10 +32,10 @@ std::vector<Observation> observe(std::mt19937& random, const std::vector<Eigen::
   std::normal_distribution<double> normal(0.0, noise);
   std::vector<Observation> observations;
   for (const Eigen::Vector3d& p : points) {
-    const Eigen::Vector3d image = project_stereo(kCamera, p);
+    const Eigen::Vector3d image = project_stereo(kCamera500, p);
     const double disparity_px = image.x() - image.z() + kDisparitySigma_px * normal(random);
-    const Eigen::Vector3d measured = triangulate(kCamera, image.x(), image.y(), disparity_px);
-    Eigen::Vector3d pixels = project_stereo(kCamera, inverse(T_reference_camera) * p);
+    const Eigen::Vector3d measured = triangulate(kCamera500, image.x(), image.y(), disparity_px);
+    Eigen::Vector3d pixels = project_stereo(kCamera500, inverse(T_reference_camera) * p);
     for (double& pixel : pixels) pixel += kPixelSigma_px * normal(random);
     observations.push_back(
         {measured, -measured / disparity_px, kDisparitySigma_px, pixels, kPixelSigma_px});
@@ -70,7 +70,7 @@ TEST(MotionEstimate, RefinementIsExactWithoutNoiseAndFindsTheOutliers) {
   std::vector<Observation> observations =
       observe(random, random_points(random, 60), some_motion(), 0.0);
   for (std::size_t i = 0; i < 15; ++i) observations[i].pixels.x() += 20.0 + static_cast<double>(i);
-  const MotionEstimate estimate = refine_motion(kCamera, observations, SE3{}, {});
+  const MotionEstimate estimate = refine_motion(kCamera500, observations, SE3{}, {});
   EXPECT_LT(log(inverse(some_motion()) * estimate.T_reference_camera).norm(), 1e-6);
   EXPECT_EQ(estimate.inliers, 45);
   EXPECT_FALSE(estimate.is_inlier[0]);
@@ -84,7 +84,7 @@ TEST(MotionEstimate, CovarianceIsThatOfTheErrorsOverManyTrials) {
   for (unsigned seed = 0; seed < trials; ++seed) {
     std::mt19937 random(seed);
     const auto observations = observe(random, random_points(random, 80), some_motion(), 1.0);
-    const MotionEstimate estimate = refine_motion(kCamera, observations, SE3{}, {});
+    const MotionEstimate estimate = refine_motion(kCamera500, observations, SE3{}, {});
     const Vector6d error = log(inverse(estimate.T_reference_camera) * some_motion());
     sum += error.dot(estimate.covariance.inverse() * error);
   }
@@ -96,9 +96,9 @@ TEST(MotionEstimate, CovarianceIsThatOfTheErrorsOverManyTrials) {
 TEST(MotionEstimate, TooFewPointsOrAllInOneDirectionGiveAnInfiniteCovariance) {
   std::mt19937 random(3);
   const auto two = observe(random, random_points(random, 2), some_motion(), 0.0);
-  EXPECT_TRUE(std::isinf(refine_motion(kCamera, two, SE3{}, {}).covariance(0, 0)));
+  EXPECT_TRUE(std::isinf(refine_motion(kCamera500, two, SE3{}, {}).covariance(0, 0)));
   const auto same = observe(random, std::vector<Eigen::Vector3d>(9, {0, 0, 3}), SE3{}, 0.0);
-  EXPECT_TRUE(std::isinf(refine_motion(kCamera, same, SE3{}, {}).covariance(0, 0)));
+  EXPECT_TRUE(std::isinf(refine_motion(kCamera500, same, SE3{}, {}).covariance(0, 0)));
 }
 
 TEST(MotionEstimate, SameMotionWhenTheReferenceFrameIsAnother) {
@@ -112,8 +112,8 @@ TEST(MotionEstimate, SameMotionWhenTheReferenceFrameIsAnother) {
     o.p_reference = T_world_reference * o.p_reference;
     o.dp_ddisparity = T_world_reference.rotation * o.dp_ddisparity;
   }
-  const MotionEstimate a = refine_motion(kCamera, observations, SE3{}, {});
-  const MotionEstimate b = refine_motion(kCamera, in_world, T_world_reference, {});
+  const MotionEstimate a = refine_motion(kCamera500, observations, SE3{}, {});
+  const MotionEstimate b = refine_motion(kCamera500, in_world, T_world_reference, {});
   EXPECT_LT(log(inverse(T_world_reference * a.T_reference_camera) * b.T_reference_camera).norm(),
             1e-8);
   EXPECT_LT((a.covariance - b.covariance).norm(), 1e-6 * a.covariance.norm());

@@ -7,7 +7,7 @@
 namespace stereovox {
 namespace {
 
-constexpr int kMaxIterations = 12;
+constexpr int kMaxPatchIterations = 12;
 // Finer steps are far below what the noise of the image allows.
 constexpr double kAtRest_px = 0.005;
 // Sum of squared brightness of a patch without contrast: one grey level per pixel.
@@ -117,7 +117,7 @@ std::optional<Alignment> align_patch(const PatchTemplate& patch, const cv::Mat1b
   const Stepper stepper(patch, freedom);
   if (!stepper.is_determined()) return std::nullopt;
   Eigen::Vector2d pixel = start_px;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMaxPatchIterations; ++iteration) {
     if (!has_room(image, pixel, kPatchRadius_px + 1)) return std::nullopt;
     Patch seen = sample(image, pixel);
     subtract_mean(seen);

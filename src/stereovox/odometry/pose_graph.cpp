@@ -8,7 +8,7 @@
 namespace stereovox {
 namespace {
 
-constexpr int kMaxIterations = 30;
+constexpr int kMaxGraphIterations = 30;
 // Steps below a micrometre and a microradian change nothing.
 constexpr double kConverged = 1e-6;
 // Keeps poses in place that nothing ties down; measured motions weigh 1e4 and more.
@@ -111,7 +111,7 @@ void optimize(std::span<const PoseLink> links, const std::vector<bool>& is_fixed
   const std::vector<int> unknown = numbered(is_fixed);
   const int unknowns = static_cast<int>(std::ranges::count(is_fixed, false));
   if (unknowns == 0) return;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMaxGraphIterations; ++iteration) {
     NormalEquations equations(unknowns);
     for (const PoseLink& link : links) add_link(link, poses, unknown, robust_sigmas, equations);
     const Eigen::VectorXd step = equations.step();

@@ -47,10 +47,6 @@ void check_writable(const fs::path& folder) {
         fmt::format("{}: cannot be written to: {}", folder.string(), std::strerror(reason)));
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  write_file_atomically(path, [&](std::ostream& out) { out << text; });
-}
-
 // Threads and memory never change results, so they must not change the map's bytes.
 std::string yaml_without_resources(PipelineConfig config) {
   config.threads = 0;
@@ -104,8 +100,8 @@ void write_outputs(const fs::path& folder, const StereoSequence& sequence,
   for (std::size_t i = 1; i < result.segments.size(); ++i)
     write_segment(folder / fmt::format("segment_{}", i + 1), config, result.segments[i],
                   result.warnings);
-  write_text(folder / "config.yaml", to_yaml(config));
-  write_text(folder / "report.json", report(sequence, config, result).dump(2) + "\n");
+  write_text_atomically(folder / "config.yaml", to_yaml(config));
+  write_text_atomically(folder / "report.json", report(sequence, config, result).dump(2) + "\n");
 }
 
 OccupancyGrid2D write_navigation_map(const fs::path& yaml_path, const VoxelMap& map,

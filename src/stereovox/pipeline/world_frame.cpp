@@ -6,10 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "stereovox/core/angles.h"
+
 namespace stereovox {
 namespace {
 
-constexpr double kDegree_rad = M_PI / 180.0;
 // Views whose floors differ by less than this see the same floor.
 constexpr double kSameTilt_rad = 3.0 * kDegree_rad;
 constexpr double kSameHeight_share = 0.1;

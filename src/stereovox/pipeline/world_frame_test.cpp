@@ -3,11 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stereovox/core/angles.h"
+
 namespace stereovox {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kDegree_rad = M_PI / 180.0;
 
 SE3 turned_about_y(double angle_rad, const Vector3d& translation) {
   return {Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, Vector3d::UnitY())), translation};

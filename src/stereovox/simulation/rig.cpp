@@ -2,13 +2,13 @@
 
 #include <numbers>
 
+#include "stereovox/core/angles.h"
+
 namespace stereovox {
 namespace {
 
-constexpr double kRadian = std::numbers::pi / 180;
-
 Eigen::Quaterniond turn(double angle_deg, const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle_deg * kRadian, axis));
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle_deg * kDegree_rad, axis));
 }
 
 // Camera axes in the robot's frame (x forward, y left, z up): x right, y down, z forward.
@@ -65,7 +65,7 @@ SE3 camera_pose(const PlanarPose& robot, const RigParams& params, int index, std
   const auto shake = [&](double row) {
     return 0.5 * params.shake_deg * lattice_noise({index / kPeriod_frames, row + 0.5, 0.5}, seed);
   };
-  const SE3 T_world_base{turn(robot.heading_rad / kRadian, Eigen::Vector3d::UnitZ()),
+  const SE3 T_world_base{turn(robot.heading_rad / kDegree_rad, Eigen::Vector3d::UnitZ()),
                          {robot.at_m.x(), robot.at_m.y(), 0.0}};
   const SE3 T_base_camera{turn(shake(0), Eigen::Vector3d::UnitX()) *
                               turn(params.pitch_deg + shake(4), Eigen::Vector3d::UnitY()) *

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "stereovox/core/angles.h"
 #include "stereovox/core/error.h"
 #include "stereovox/io/file_bytes.h"
 #include "stereovox/io/yaml_fields.h"
@@ -14,7 +15,7 @@
 namespace stereovox {
 namespace {
 
-constexpr Range kLength_m{0.001, 500};
+constexpr Range kSide_m{0.001, 500};
 constexpr Range kAngle_deg{-3600, 3600};
 constexpr std::uint64_t kMaxWorldBytes = 16ULL << 20;
 
@@ -71,11 +72,11 @@ class WorldReader {
   void read_room() {
     YamlFields room(root_.node("room"), source_, "room");
     const Eigen::Vector2d size = room.point2("size_m");
-    if (size.minCoeff() < 1 || size.maxCoeff() > kLength_m.max)
+    if (size.minCoeff() < 1 || size.maxCoeff() > kSide_m.max)
       room.fail(fmt::format("'size_m' is [{}, {}], each must be in [1, {}]", size.x(), size.y(),
-                            kLength_m.max));
+                            kSide_m.max));
     height_m_ = room.number("height_m", {1, 50}, 2.8);
-    const double wall = room.number("wall_thickness_m", kLength_m, 0.2);
+    const double wall = room.number("wall_thickness_m", kSide_m, 0.2);
     world_.min_m = Eigen::Vector2d::Constant(-wall);
     world_.max_m = size + Eigen::Vector2d::Constant(wall);
     const Placement middle{size / 2, 0.0};
@@ -153,13 +154,13 @@ class WorldReader {
   void add_wall(YamlFields& wall) {
     const Eigen::Vector2d from = wall.point2("from"), to = wall.point2("to");
     const double length = (to - from).norm();
-    if (length < kLength_m.min) wall.fail("has no length");
+    if (length < kSide_m.min) wall.fail("has no length");
     const Eigen::Vector2d along = (to - from) / length;
-    const double thickness = wall.number("thickness_m", kLength_m, 0.12);
+    const double thickness = wall.number("thickness_m", kSide_m, 0.12);
     const double height = wall.number("height_m", {0.05, 50}, height_m_);
     const int m = material(wall, "material", "plaster");
     const auto piece = [&](double a, double b, double bottom, double top) {
-      if (b - a < kLength_m.min || top - bottom < kLength_m.min) return;
+      if (b - a < kSide_m.min || top - bottom < kSide_m.min) return;
       add("wall", {box_prism({from + along * (a + b) / 2, std::atan2(along.y(), along.x())},
                              {b - a, thickness, top - bottom}, bottom, m)});
     };
@@ -175,7 +176,7 @@ class WorldReader {
   // One thing, or a row of equal ones.
   void add_thing(YamlFields& thing) {
     const std::string kind = thing.text("kind");
-    Placement at{thing.point2("at"), thing.number("yaw_deg", kAngle_deg, 0) * kRadian};
+    Placement at{thing.point2("at"), thing.number("yaw_deg", kAngle_deg, 0) * kDegree_rad};
     const int count = thing.integer("count", {1, 1000}, 1);
     const Eigen::Vector2d step =
         thing.has("step_m") ? thing.point2("step_m") : Eigen::Vector2d(0, 0);
@@ -236,7 +237,6 @@ class WorldReader {
     return plan;
   }
 
-  static constexpr double kRadian = std::numbers::pi / 180;
   static constexpr double kSlab_m = 0.1;
   std::string source_;
   YamlFields root_;

@@ -23,10 +23,6 @@ void make_folder(const fs::path& folder) {
     throw ResourceError(fmt::format("{}: cannot be made ({})", folder.string(), error.message()));
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  write_file_atomically(path, [&](std::ostream& out) { out << text; });
-}
-
 // One form of data set: where the images of a frame go, and what is written when all are there.
 struct Form {
   std::function<std::pair<fs::path, fs::path>(int index, std::int64_t stamp_ns)> image_paths;
@@ -38,13 +34,14 @@ Form plain_form(const fs::path& folder, const StereoRig& rig) {
   make_folder(folder / "right");
   const auto finish = [=](const Trajectory& written) {
     const PinholeCamera& camera = rig.left.pinhole;
-    write_text(folder / "calib.yaml",
-               fmt::format("width: {}\nheight: {}\nfx: {}\nfy: {}\ncx: {}\ncy: {}\nbaseline: {}\n",
-                           camera.width, camera.height, camera.fx_px, camera.fy_px, camera.cx_px,
-                           camera.cy_px, rig.baseline_m()));
+    write_text_atomically(
+        folder / "calib.yaml",
+        fmt::format("width: {}\nheight: {}\nfx: {}\nfy: {}\ncx: {}\ncy: {}\nbaseline: {}\n",
+                    camera.width, camera.height, camera.fx_px, camera.fy_px, camera.cx_px,
+                    camera.cy_px, rig.baseline_m()));
     std::string times;
     for (const StampedPose& pose : written) times += seconds_text(pose.stamp_ns) + "\n";
-    write_text(folder / "times.txt", times);
+    write_text_atomically(folder / "times.txt", times);
     write_tum(folder / "poses.txt", written, "T_world_camera of the left camera, exact");
   };
   const auto paths = [=](int index, std::int64_t) {
@@ -81,10 +78,12 @@ void write_euroc_tables(const fs::path& mav, const StereoRig& rig, const Traject
     truth += fmt::format("{},{},{},{},{},{},{},{},0,0,0,0,0,0,0,0,0\n", pose.stamp_ns, t.x(), t.y(),
                          t.z(), q.w(), q.x(), q.y(), q.z());
   }
-  write_text(mav / "cam0" / "sensor.yaml", sensor_yaml(rig.left, SE3{}));
-  write_text(mav / "cam1" / "sensor.yaml", sensor_yaml(rig.right, inverse(rig.T_right_left)));
-  for (const char* camera : {"cam0", "cam1"}) write_text(mav / camera / "data.csv", images);
-  write_text(mav / "state_groundtruth_estimate0" / "data.csv", truth);
+  write_text_atomically(mav / "cam0" / "sensor.yaml", sensor_yaml(rig.left, SE3{}));
+  write_text_atomically(mav / "cam1" / "sensor.yaml",
+                        sensor_yaml(rig.right, inverse(rig.T_right_left)));
+  for (const char* camera : {"cam0", "cam1"})
+    write_text_atomically(mav / camera / "data.csv", images);
+  write_text_atomically(mav / "state_groundtruth_estimate0" / "data.csv", truth);
 }
 
 Form euroc_form(const fs::path& folder, const StereoRig& rig) {

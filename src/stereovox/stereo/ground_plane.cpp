@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "stereovox/core/angles.h"
+
 namespace stereovox {
 namespace {
 
@@ -14,7 +16,6 @@ constexpr int kRefinements = 3;
 constexpr int kMaxSamples = 4000;
 constexpr int kMinSamples = 100;
 constexpr unsigned kSeed = 1;
-constexpr double kDegree_rad = M_PI / 180.0;
 
 // Rows are (x, y, 1) with x, y relative to the principal point, in focal lengths: then the plane
 // d = n . (x, y, 1) is the plane n . p = fx B in camera coordinates.

@@ -5,11 +5,12 @@
 #include <cmath>
 #include <random>
 
+#include "stereovox/core/angles.h"
+
 namespace stereovox {
 namespace {
 
 const RectifiedCamera kCamera{{640, 480, 525.0, 520.0, 320.0, 240.0}, 0.12};
-constexpr double kDegree_rad = M_PI / 180.0;
 
 // Down, in a camera that is pitched down and rolled clockwise.
 Eigen::Vector3d down_for(double pitch_deg, double roll_deg) {
