@@ -10,6 +10,7 @@
 #include "run_display.h"
 #include "stereovox/core/timestamp.h"
 #include "stereovox/io/trajectory_file.h"
+#include "stereovox/occupancy/frame_view.h"
 #include "stereovox/pipeline/build_maps.h"
 #include "stereovox/pipeline/outputs.h"
 #include "stereovox/pipeline/report.h"
@@ -111,6 +112,10 @@ void print_summary(const RunOptions& options, const StereoSequence& sequence,
   std::cout << fmt::format("{} voxels of {} m: {} occupied, {} free, {:.1f} MB\n", counts.observed,
                            main.map.voxel_size_m(), counts.occupied, counts.free,
                            static_cast<double>(main.map.memory_bytes()) / 1e6);
+  const OccupancyParams ranged = with_ranges(config.occupancy, result.camera);
+  std::cout << fmt::format(
+      "surfaces are marked up to {:.1f} m away, space is cleared up to {:.1f} m\n",
+      ranged.max_depth_m, ranged.max_clearing_m);
   print_stages(result.times);
   std::cout << "written to " << options.output
             << ": map.svx nav.pgm nav.yaml nav.png trajectory.tum trajectory_kitti.txt report.json "

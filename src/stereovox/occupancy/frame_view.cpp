@@ -85,12 +85,13 @@ OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera
   constexpr double kLeastOfSurface_px = 8.0, kLeastOfFreeSpace_px = 13.0;
   const double sigma_px = params.error_model.min_sigma_disparity_px;
   const double exact_m = std::sqrt(max_sigma_m(params) * camera.depth_m(sigma_px));
+  const auto range_m = [&](double least_m, double least_px) {
+    return std::max(least_m, std::min(camera.depth_m(least_px), exact_m));
+  };
   OccupancyParams ranged = params;
-  if (params.max_depth_m == 0.0)
-    ranged.max_depth_m = std::max(kLeastDepth_m, camera.depth_m(kLeastOfSurface_px));
+  if (params.max_depth_m == 0.0) ranged.max_depth_m = range_m(kLeastDepth_m, kLeastOfSurface_px);
   if (params.max_clearing_m == 0.0)
-    ranged.max_clearing_m =
-        std::max(kLeastClearing_m, std::min(camera.depth_m(kLeastOfFreeSpace_px), exact_m));
+    ranged.max_clearing_m = range_m(kLeastClearing_m, kLeastOfFreeSpace_px);
   return ranged;
 }
 

@@ -24,8 +24,8 @@ struct SamplingSteps {
 
 // The parameters with the ranges set that they leave open (0). Cameras whose lines of sight part
 // widely measure farther: such a range ends where disparities become small (8 px for surfaces, 13
-// for free space), and free space where errors exceed max_sigma_half_voxels besides. The ranges for
-// a small robot's camera indoors, 8 and 5 m, are the least.
+// for free space) or errors exceed max_sigma_half_voxels. The ranges for a small robot's camera
+// indoors, 8 and 5 m, are the least.
 OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera& camera);
 
 // As the parameters say, or where they leave it open (0): rays about one voxel apart at the

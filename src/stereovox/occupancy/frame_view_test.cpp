@@ -39,7 +39,7 @@ TEST(Ranges, OfASmallRigAreThoseOfRooms) {
 
 TEST(Ranges, OfAWideRigEndWhereDisparitiesAreSmall) {
   const RectifiedCamera car = {{1226, 370, 707.0, 707.0, 613.0, 185.0}, 0.54};
-  const OccupancyParams coarse = with_ranges(open_ranges(0.5), car);
+  const OccupancyParams coarse = with_ranges(open_ranges(2.0), car);
   EXPECT_DOUBLE_EQ(car.disparity_px(coarse.max_depth_m), 8.0);
   EXPECT_DOUBLE_EQ(car.disparity_px(coarse.max_clearing_m), 13.0);
 }

@@ -64,12 +64,11 @@ void describe_selection(OccupancyParams& p, ParameterList& list) {
        "every n-th pixel and row clears the space before it; 0 = rays a voxel apart at "
        "max_clearing_m");
   list("min_depth_m", p.min_depth_m, {0.01, 10}, "nearer measurements are ignored");
-  list(
-      "max_depth_m", p.max_depth_m, {0, 200},
-      "farther measurements only clear space; 0 = where disparities fall below 8 px, at least 8 m");
+  list("max_depth_m", p.max_depth_m, {0, 200},
+       "farther measurements only clear space; 0 = up to disparities of 8 px, at least 8 m");
   list("max_clearing_m", p.max_clearing_m, {0, 200},
-       "space farther away is never cleared; 0 = where disparities fall below 13 px or errors "
-       "exceed max_sigma_half_voxels, at least 5 m");
+       "space farther away is never cleared; 0 = up to disparities of 13 px and errors of "
+       "max_sigma_half_voxels, at least 5 m");
   list("max_sigma_half_voxels", p.max_sigma_half_voxels, {0.1, kNoSigmaLimit_half_voxels},
        "measurements with a larger error of the range only clear space; in half voxel edges");
   list("min_height_m", p.min_height_m, {-100, 100},
