@@ -222,6 +222,7 @@ class BinFiller {
 
   std::vector<Beam> beams(const PseudoScanParams& params) {
     std::vector<Beam> beams;
+    beams.reserve(static_cast<std::size_t>(bearings_.count()));
     for (int i = 0; i < bearings_.count(); ++i)
       beams.push_back(beam_of(bins_[static_cast<std::size_t>(i)], bearings_.center_rad(i), params));
     return beams;

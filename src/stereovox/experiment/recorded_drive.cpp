@@ -42,7 +42,7 @@ std::string key_of(Params params, const std::string& only_sections = "") {
 
 // The folder for a key; the key is written into it, so that two with one name are noticed.
 fs::path keyed_folder(const fs::path& parent, const std::string& name, const std::string& key) {
-  const fs::path folder = parent / (name + "_" + content_name(key));
+  fs::path folder = parent / (name + "_" + content_name(key));
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)

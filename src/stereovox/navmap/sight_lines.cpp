@@ -72,8 +72,7 @@ void sort_unique(Cells& cells) {
     return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
   };
   std::ranges::sort(cells, order);
-  const auto repeated = std::ranges::unique(cells);
-  cells.erase(repeated.begin(), repeated.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
 }
 
 // The distinct cells below the voxels in the layers.
