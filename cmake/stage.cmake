@@ -45,7 +45,7 @@ endfunction()
 # of kernels have the names of the fast ones, so they stay alone.
 function(stereovox_compile_together target)
   get_target_property(sources ${target} SOURCES)
-  list(FILTER sources INCLUDE REGEX "_reference\\.cpp$|direct_fit\\.cpp$")
+  list(FILTER sources INCLUDE REGEX "_reference\\.cpp$")
   set_source_files_properties(${sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
 endfunction()
