@@ -10,6 +10,7 @@
 // matcher's. OpenCV's matchers get images of the same size, so they leave the left border empty;
 // ours do not.
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -228,6 +229,11 @@ int run(const Options& options) {
 }  // namespace stereovox::bench
 
 int main(int argc, char** argv) {
+  // A program that matches frame after frame keeps its memory. Here each contender would take that
+  // of the one before back from the system, page by page.
+  constexpr int kKept_bytes = 1 << 30, kLargest_bytes = 1 << 25;
+  mallopt(M_TRIM_THRESHOLD, kKept_bytes);
+  mallopt(M_MMAP_THRESHOLD, kLargest_bytes);
   stereovox::bench::Options options;
   CLI::App app("our matchers beside OpenCV's");
   app.add_option("--rounds", options.rounds)->check(CLI::PositiveNumber);

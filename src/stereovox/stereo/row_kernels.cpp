@@ -7,8 +7,9 @@ namespace stereovox {
 const RowKernels& portable_row_kernels() { return kRowKernels; }
 
 const RowKernels& fastest_row_kernels() {
-  const RowKernels* const avx2 = avx2_row_kernels();
-  return avx2 != nullptr ? *avx2 : portable_row_kernels();
+  for (const RowKernels* const kernels : {avx512_row_kernels(), avx2_row_kernels()})
+    if (kernels != nullptr) return *kernels;
+  return portable_row_kernels();
 }
 
 }  // namespace stereovox

@@ -1,6 +1,6 @@
-// The loops over the pixels of a row that follow the search of a census matcher, compiled for AVX2
-// and for any machine from the same plain code; all give the same bytes. The rule about plain
-// pointers is that of census_kernels.h.
+// The loops over the pixels of a row that follow the search of a census matcher, compiled for AVX2,
+// for AVX-512 and for any machine from the same plain code; all give the same bytes. The rule about
+// plain pointers is that of census_kernels.h.
 #pragma once
 
 #include <cstdint>
@@ -116,7 +116,8 @@ struct RowKernels {
 };
 
 const RowKernels& portable_row_kernels();
-const RowKernels* avx2_row_kernels();  // nullptr on a machine without AVX2
+const RowKernels* avx2_row_kernels();    // nullptr on a machine without AVX2
+const RowKernels* avx512_row_kernels();  // nullptr on a machine without AVX-512 BW, VL and DQ
 const RowKernels& fastest_row_kernels();
 
 }  // namespace stereovox

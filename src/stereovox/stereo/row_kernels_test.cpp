@@ -109,11 +109,15 @@ std::vector<double> results(const RowKernels& kernels, int width) {
   return all;
 }
 
-TEST(RowKernels, GiveTheSameOnEveryMachine) {
-  if (avx2_row_kernels() == nullptr) GTEST_SKIP() << "this machine has no AVX2";
+void expect_same_as_portable(const RowKernels* kernels) {
+  if (kernels == nullptr) GTEST_SKIP() << "this machine does not have these instructions";
   for (const int width : {1, 2, 15, 16, 17, 63, 640, 1001})
-    EXPECT_EQ(results(*avx2_row_kernels(), width), results(portable_row_kernels(), width)) << width;
+    EXPECT_EQ(results(*kernels, width), results(portable_row_kernels(), width)) << width;
 }
+
+TEST(RowKernels, GiveTheSameWithAvx2) { expect_same_as_portable(avx2_row_kernels()); }
+
+TEST(RowKernels, GiveTheSameWithAvx512) { expect_same_as_portable(avx512_row_kernels()); }
 
 }  // namespace
 }  // namespace stereovox
