@@ -48,7 +48,7 @@ void write_ideal_maps(const SimulateOptions& options, const Simulation& simulati
       simulation.trajectory().front().T_world_camera.translation.head<2>();
   for (const double cell_size_m : options.cell_sizes_m) {
     const IdealMap ideal = ideal_map(simulation.world(), cell_size_m, HeightBand{}, start_m);
-    write_map_server(fs::path(options.output) / ideal_map_name(cell_size_m), ideal.normalised,
+    write_map_server(fs::path(options.output) / ideal_map_name(cell_size_m), planning_map(ideal),
                      MapServerMode::trinary);
   }
   write_doorways(fs::path(options.output) / "doorways.yaml", doorways_of(simulation.world()));
