@@ -12,7 +12,7 @@ namespace {
 constexpr double kTunedFreeThreshold = 0.25;
 constexpr int kTunedMinObservations = 2;
 constexpr double kTunedWallContrast = 0.1;
-constexpr double kTunedSureState = 0.75;
+constexpr double kTunedMinReach = 0.1;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ void NavmapParams::describe(ParameterList& list) {
         free_threshold = tuned ? kTunedFreeThreshold : corrected.free_threshold;
         label_rule = literal ? LabelRule::as_printed : LabelRule::visible;
         wall_contrast = tuned ? kTunedWallContrast : corrected.wall_contrast;
-        sure_state = tuned ? kTunedSureState : corrected.sure_state;
+        min_reach = tuned ? kTunedMinReach : corrected.min_reach;
         hidden_cells = tuned ? HiddenCells::unknown : HiddenCells::keep;
       });
   list("column", column, "which voxels above a cell count: all, or those in the height band");
@@ -63,9 +63,9 @@ void NavmapParams::describe(ParameterList& list) {
   list("label_rule", label_rule, "which cells become free");
   list("wall_contrast", wall_contrast, {0, 1},
        "a cell before an obstacle whose state is higher by more than this is free; 1 = never");
-  list("sure_state", sure_state, {0, 1},
-       "a cell before an obstacle with a smaller state is as free or occupied as the mean place of "
-       "the surface's points says; 0 = the contrast decides");
+  list("min_reach", min_reach, {0, 1},
+       "a surface occupies a cell when the mean of its points reaches into it by more than this "
+       "share of its edge; 1 = states alone decide");
   list("face_bias_m", face_bias_m, {0.001, 1},
        "what does not average out of that mean; a cell before a border it is behind by less is "
        "unknown");

@@ -6,7 +6,7 @@
 
 namespace stereovox {
 
-// What sets column, min_observations, free_threshold, label_rule, wall_contrast, sure_state and
+// What sets column, min_observations, free_threshold, label_rule, wall_contrast, min_reach and
 // hidden_cells together; what is set after it stays.
 enum class NavmapPreset {
   literal,    // as the paper prints it
@@ -44,13 +44,13 @@ struct NavmapParams {
   double hysteresis = 0.0;
   LabelRule label_rule = LabelRule::visible;
   double wall_contrast = 1.0;
-  double sure_state = 0.0;
+  double min_reach = 1.0;
   double face_bias_m = 0.01;
   HiddenCells hidden_cells = HiddenCells::keep;
 
   // Whether the layers of cells before obstacles are looked at (thin_walls.h).
   bool thins_walls() const { return wall_contrast < 1.0 || uses_faces(); }
-  bool uses_faces() const { return sure_state > 0.0; }
+  bool uses_faces() const { return min_reach < 1.0; }
 
   void describe(ParameterList& list);
 };

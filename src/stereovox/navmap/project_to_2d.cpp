@@ -1,6 +1,7 @@
 #include "stereovox/navmap/project_to_2d.h"
 
 #include <limits>
+#include <vector>
 
 #include "stereovox/navmap/column_states.h"
 #include "stereovox/navmap/hidden_cells.h"
@@ -66,8 +67,10 @@ OccupancyGrid2D project_to_2d(const VoxelMap& map, const SightLines& sight_lines
     CellLabel& label = grid.labels[grid.position_of(cell - bounds.min)];
     if (label == CellLabel::unknown) label = CellLabel::free;
   });
-  if (params.thins_walls()) thin_walls(grid, faces, params);
+  std::vector<std::size_t> doubtful;
+  if (params.thins_walls()) doubtful = thin_walls(grid, faces, params);
   if (params.hidden_cells == HiddenCells::unknown) forget_hidden_cells(grid);
+  for (const std::size_t position : doubtful) grid.labels[position] = CellLabel::unknown;
   return grid;
 }
 

@@ -14,55 +14,94 @@ bool is_inside(const GridGeometry& geometry, const Eigen::Vector2i& cell) {
   return cell.x() >= 0 && cell.y() >= 0 && cell.x() < geometry.width && cell.y() < geometry.height;
 }
 
-// A cell with free space before it and an obstacle behind it; `step` leads to the free space.
+constexpr std::array<std::array<int, 2>, 4> kSteps = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+
+// A cell with free space before it, to which `step` leads, and none behind it.
 struct Front {
   Eigen::Vector2i cell, step;
+
+  Eigen::Vector2i before() const { return cell + step; }
+  Eigen::Vector2i behind() const { return cell - step; }
 };
 
-bool is_front(const OccupancyGrid2D& map, const Front& front) {
-  const Eigen::Vector2i before = front.cell + front.step, behind = front.cell - front.step;
-  return is_inside(map.geometry, before) && is_inside(map.geometry, behind) &&
-         map.label_at(before) == CellLabel::free && map.label_at(behind) == CellLabel::occupied;
-}
+class ThinWalls {
+ public:
+  ThinWalls(OccupancyGrid2D& map, const WallFaces& faces, const NavmapParams& params)
+      : map_(map), faces_(faces), params_(params), labels_(map.labels) {}
 
-// `reach_m`: how far the surface reaches into the cell.
-CellLabel label_by_face(CellLabel label, double state, double reach_m, const NavmapParams& params) {
-  const bool is_occupied = label == CellLabel::occupied;
-  const bool is_doubtful = is_occupied ? state < params.sure_state : state > kMinReachedState;
-  if (!is_doubtful) return label;
-  if (reach_m > 0.0) return CellLabel::occupied;
-  if (reach_m > -params.face_bias_m) return CellLabel::unknown;
-  return is_occupied ? CellLabel::free : label;
-}
+  // Nothing that was changed is looked at again: the cells of the map change in `finish`.
+  void look_at(const Front& front) {
+    if (!is_front(front)) return;
+    const GridGeometry& geometry = map_.geometry;
+    const Eigen::Vector2i first_cell =
+        (geometry.origin_m / geometry.cell_size_m).array().round().cast<int>();
+    const auto reach_m = faces_.reach_m(first_cell + front.cell, front.step);
+    if (!reach_m)
+      judge_by_contrast(front);
+    else if (is(front.cell, CellLabel::occupied))
+      judge_occupied(front, *reach_m);
+    else
+      judge_other(front, *reach_m);
+  }
 
-CellLabel label_of(const OccupancyGrid2D& map, const Front& front, const WallFaces& faces,
-                   const NavmapParams& params) {
-  const CellLabel label = map.label_at(front.cell);
-  const double state = map.states[map.position_of(front.cell)];
-  const Eigen::Vector2i first_cell =
-      (map.geometry.origin_m / map.geometry.cell_size_m).array().round().cast<int>();
-  const auto reach_m = faces.reach_m(first_cell + front.cell, front.step);
-  if (reach_m) return label_by_face(label, state, *reach_m, params);
-  const double behind = map.states[map.position_of(front.cell - front.step)];
-  const bool is_spread = label == CellLabel::occupied && behind > state + params.wall_contrast;
-  return is_spread ? CellLabel::free : label;
-}
+  std::vector<std::size_t> finish() {
+    map_.labels = std::move(labels_);
+    return std::move(doubtful_);
+  }
+
+ private:
+  bool is(const Eigen::Vector2i& cell, CellLabel label) const {
+    return map_.label_at(cell) == label;
+  }
+  double state_of(const Eigen::Vector2i& cell) const { return map_.states[map_.position_of(cell)]; }
+  void set(const Eigen::Vector2i& cell, CellLabel label) {
+    labels_[map_.position_of(cell)] = label;
+  }
+  double min_reach_m() const { return params_.min_reach * map_.geometry.cell_size_m; }
+
+  bool is_front(const Front& front) const {
+    return is_inside(map_.geometry, front.before()) && is_inside(map_.geometry, front.behind()) &&
+           is(front.before(), CellLabel::free) && !is(front.behind(), CellLabel::free);
+  }
+
+  void judge_occupied(const Front& front, double reach_m) {
+    if (reach_m > min_reach_m()) return;
+    set(front.cell, CellLabel::free);
+    set(front.behind(), CellLabel::occupied);
+    if (reach_m > 0.0) doubtful_.push_back(map_.position_of(front.cell));
+  }
+
+  void judge_other(const Front& front, double reach_m) {
+    if (state_of(front.cell) <= kMinReachedState || !is(front.behind(), CellLabel::occupied))
+      return;
+    if (reach_m > min_reach_m())
+      set(front.cell, CellLabel::occupied);
+    else if (reach_m > -params_.face_bias_m)
+      set(front.cell, CellLabel::unknown);
+  }
+
+  void judge_by_contrast(const Front& front) {
+    if (is(front.cell, CellLabel::occupied) && is(front.behind(), CellLabel::occupied) &&
+        state_of(front.behind()) > state_of(front.cell) + params_.wall_contrast)
+      set(front.cell, CellLabel::free);
+  }
+
+  OccupancyGrid2D& map_;
+  const WallFaces& faces_;
+  const NavmapParams& params_;
+  std::vector<CellLabel> labels_;
+  std::vector<std::size_t> doubtful_;
+};
 
 }  // namespace
 
-void thin_walls(OccupancyGrid2D& map, const WallFaces& faces, const NavmapParams& params) {
-  static const std::array<Eigen::Vector2i, 4> kSteps = {
-      Eigen::Vector2i(1, 0), Eigen::Vector2i(-1, 0), Eigen::Vector2i(0, 1), Eigen::Vector2i(0, -1)};
-  std::vector<CellLabel> labels = map.labels;
+std::vector<std::size_t> thin_walls(OccupancyGrid2D& map, const WallFaces& faces,
+                                    const NavmapParams& params) {
+  ThinWalls walls(map, faces, params);
   for (int y = 0; y < map.geometry.height; ++y)
     for (int x = 0; x < map.geometry.width; ++x)
-      for (const Eigen::Vector2i& step : kSteps) {
-        const Front front{{x, y}, step};
-        if (!is_front(map, front)) continue;
-        const CellLabel label = label_of(map, front, faces, params);
-        if (label != map.label_at(front.cell)) labels[map.position_of(front.cell)] = label;
-      }
-  map.labels = std::move(labels);
+      for (const auto& [dx, dy] : kSteps) walls.look_at({{x, y}, {dx, dy}});
+  return walls.finish();
 }
 
 }  // namespace stereovox

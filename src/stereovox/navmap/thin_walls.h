@@ -1,6 +1,8 @@
-// Where the evidence for one surface is spread over two layers of cells, the surface lies in one of
-// them: where the mean of its points is, or in the layer that has more evidence.
+// Where the evidence for one surface is spread over two layers of cells, or lies in the layer
+// before the one that the surface belongs to, because it stands near their border.
 #pragma once
+
+#include <vector>
 
 #include "stereovox/navmap/navmap_params.h"
 #include "stereovox/navmap/occupancy_grid_2d.h"
@@ -8,15 +10,21 @@
 
 namespace stereovox {
 
-// Looks at each cell between a free cell and, on the opposite side, an occupied one. Where the mean
-// of the surface's points, seen from the free side, is known (WallFaces::reach_m):
-//   an occupied cell that they do not reach becomes free, unless its state is params.sure_state or
-//   more; another cell that they reach becomes occupied;
-//   where the mean is behind the border by less than params.face_bias_m, such a cell becomes
-//   unknown.
-// Elsewhere an occupied cell becomes free when the state behind it is higher by more than
-// params.wall_contrast: what was measured in it is the error of the surface behind. A cell that is
-// really filled is nearer to those who look and collects more evidence than the one behind it.
-void thin_walls(OccupancyGrid2D& map, const WallFaces& faces, const NavmapParams& params);
+// Looks at each cell with a free cell before it and one behind it, on the opposite side, that is
+// not free. Where it is known how far the surfaces seen from the free side reach into it
+// (WallFaces::reach_m):
+//   an occupied cell that they reach into by at most params.min_reach of its edge is free, and what
+//   lies behind it is occupied; it is returned when they cross the border all the same;
+//   another cell with some evidence, before an occupied one, is occupied when they reach into it
+//   farther, and unknown when they stay behind it by less than params.face_bias_m.
+// Elsewhere an occupied cell becomes free when the state of an occupied one behind it is higher by
+// more than params.wall_contrast: what was measured in it is the error of the surface behind. A
+// cell that is really filled is nearer to those who look and collects more evidence than the one
+// behind.
+//
+// Returns the positions of cells that are free or occupied, nobody knows: they are labelled free
+// until it is found what free space touches.
+std::vector<std::size_t> thin_walls(OccupancyGrid2D& map, const WallFaces& faces,
+                                    const NavmapParams& params);
 
 }  // namespace stereovox

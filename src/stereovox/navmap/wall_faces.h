@@ -1,6 +1,7 @@
 // Where surfaces lie near the borders between cells, to a fraction of a cell. A surface a few
 // centimetres from a border puts points into the cells on both sides of it, because each has an
 // error; the states of both rise, and only the mean of the points tells in which of them it is.
+// Heights are kept apart in slices, so that a shelf is not lost in the wall behind it.
 //
 //   WallFaces faces;
 //   for each frame: faces.observe(frame, params);
@@ -8,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,7 +21,11 @@
 
 namespace stereovox {
 
+class ByteReader;
+
 inline constexpr const char* kWallFacesAttachment = "wall_faces";
+
+inline constexpr double kFaceSliceHeight_m = 0.25;
 
 // The mean of what was measured within half a cell of one border from one side of it, weighted by
 // the inverse variance of each point's range.
@@ -34,15 +40,18 @@ struct WallFace {
 class WallFaces {
  public:
   // Adds the points of a frame that are exact against the voxel (is_exact) and at the heights that
-  // count. To be called after the frame has been integrated.
+  // count, along the axes that their surface looks along, by at most 45 degrees: the side of a wall
+  // says nothing of where it ends. To be called after the frame has been integrated.
   void observe(const FrameView& frame, double floor_z_m, const NavmapParams& params);
 
-  // How far a surface that is seen from the side to which `step` (a unit step along an axis) leads
-  // reaches into `cell` across the border with the cell on the other side, in metres; negative when
-  // it stays behind the border. Nothing when too little is known.
+  // How far the surfaces that are seen from the side to which `step` (a unit step along an axis)
+  // leads reach into `cell` across the border with the cell on the other side: the farthest of all
+  // heights, in metres, kWholeCell when one stands in the nearer half of the cell; negative when
+  // all stay behind the border. Nothing when too little is known.
+  static constexpr double kWholeCell = std::numeric_limits<double>::infinity();
   std::optional<double> reach_m(const Eigen::Vector2i& cell, const Eigen::Vector2i& step) const;
 
-  bool is_empty() const { return tiles_.empty(); }
+  bool is_empty() const { return slices_.empty(); }
   bool operator==(const WallFaces&) const = default;
 
  private:
@@ -53,15 +62,21 @@ class WallFaces {
   // y.
   static constexpr int kFacesPerCell = 4;
   using Tile = std::array<WallFace, kCellsPerTile * kFacesPerCell>;
+  using Slice = std::map<TileIndex, Tile>;
 
   static std::size_t place_of(const Eigen::Vector2i& cell, int axis, bool is_from_above) {
     const int place = position_in_tile(cell) * kFacesPerCell + 2 * axis + (is_from_above ? 1 : 0);
     return static_cast<std::size_t>(place);
   }
 
-  void add(const PointMeasurement& point, double cell_size_m, double bias_m);
+  static void add(const PointMeasurement& point, int axis, double cell_size_m, double bias_m,
+                  Slice& slice);
+  static WallFace face_behind(const Slice& slice, const Eigen::Vector2i& cell,
+                              const Eigen::Vector2i& step);
+  static void append(const Slice& slice, std::string& bytes);
+  static Slice take_slice(ByteReader& reader);
 
-  std::map<TileIndex, Tile> tiles_;
+  std::map<int, Slice> slices_;  // by height above the floor, in kFaceSliceHeight_m
 };
 
 // For VoxelMap::attachments. Equal faces have equal bytes.

@@ -6,13 +6,14 @@
 #include <random>
 
 #include "stereovox/core/error.h"
+#include "stereovox/occupancy/byte_buffer.h"
 #include "stereovox/occupancy/scene_for_test.h"
 
 namespace stereovox {
 namespace {
 
 constexpr double kFaceCell_m = 0.25;
-constexpr NavmapParams kParams{.sure_state = 0.75};
+constexpr NavmapParams kParams{.min_reach = 0.1};
 const Eigen::Vector2i kTowardsCamera(-1, 0), kAway(1, 0);
 
 // A wall across the view of a camera at `camera_x_m`, `depth_m` away; each pixel has an error.
@@ -38,8 +39,8 @@ TEST(WallFaces, TellOnWhichSideOfABorderAWallStands) {
   for (const double wall_x_m : {1.96, 1.985, 2.015, 2.04}) {
     const auto reach = faces_of_wall(0.0, wall_x_m).reach_m({7, 0}, kTowardsCamera);
     ASSERT_TRUE(reach.has_value());
-    // Points that err towards the camera weigh more.
-    EXPECT_NEAR(*reach, 2.0 - wall_x_m, 0.01) << wall_x_m;
+    // The farthest of five heights, each of about 40 points.
+    EXPECT_NEAR(*reach, 2.0 - wall_x_m, 0.012) << wall_x_m;
   }
 }
 
@@ -55,6 +56,43 @@ TEST(WallFaces, FromTheOtherSideTheSignIsTheOther) {
   const auto reach = faces_of_wall(4.0, 1.97, true).reach_m({8, 0}, kAway);
   ASSERT_TRUE(reach.has_value());
   EXPECT_NEAR(*reach, 0.03, 0.01);
+}
+
+// What a camera at x = 0 that looks along `yaw_rad` sees for some time.
+WallFaces faces_of(const DisparityImage& image, double yaw_rad = 0.0) {
+  OccupancyParams occupancy;
+  occupancy.voxel_size_m = kFaceCell_m;
+  VoxelMap map(kFaceCell_m);
+  const RectifiedCamera camera = scene::camera();
+  const SE3 pose = scene::level_pose(yaw_rad, {0, 0, 1});
+  WallFaces faces;
+  for (int frame = 0; frame < 20; ++frame)
+    faces.observe(view_frame(image, camera, pose, frame * scene::kSecond_ns, occupancy, map), 0.0,
+                  kParams);
+  return faces;
+}
+
+TEST(WallFaces, AShelfCountsHoweverMuchWallIsBelowIt) {
+  DisparityImage image = scene::wall_at(2.04);
+  const DisparityImage shelf = scene::wall_at(1.94);
+  const cv::Rect above(0, 0, image.width(), 3 * image.height() / 8);  // 1.2 m
+  shelf.disparity_px(above).copyTo(image.disparity_px(above));
+  const auto reach = faces_of(image).reach_m({7, 0}, kTowardsCamera);
+  ASSERT_TRUE(reach.has_value());
+  EXPECT_NEAR(*reach, 0.06, 0.01);
+}
+
+TEST(WallFaces, WhatStandsInTheNearerHalfOfACellFillsIt) {
+  EXPECT_EQ(faces_of(scene::wall_at(1.8)).reach_m({7, 0}, kTowardsCamera), WallFaces::kWholeCell);
+}
+
+TEST(WallFaces, TheSideOfAWallSaysNothingOfWhereItEnds) {
+  // The wall runs along x, on the left, at y = 2 m, across the borders of cells 0 and 1 along x.
+  const WallFaces faces = faces_of(scene::wall_at(1.98), std::numbers::pi / 2);
+  EXPECT_TRUE(faces.reach_m({0, 7}, {0, -1}).has_value());
+  for (const int x : {-2, -1, 0, 1})
+    for (const Eigen::Vector2i& step : {kTowardsCamera, kAway})
+      EXPECT_FALSE(faces.reach_m({x, 7}, step).has_value()) << x;
 }
 
 TEST(WallFaces, PointsTooFarForTheVoxelAreLeftOut) {
@@ -77,15 +115,27 @@ TEST(WallFaces, SurviveTheirBytes) {
   EXPECT_EQ(wall_faces_from_bytes(to_bytes(WallFaces{}), "map.svx"), WallFaces{});
 }
 
+TEST(WallFaces, OfTheFirstFormAreRead) {
+  // One tile, one face: of the border below cell (8, 0), seen from below.
+  std::string bytes = "wall faces 1\n";
+  for (const std::int32_t number : {1, 1, 0}) append_number(bytes, number);
+  bytes += '\1' + std::string(31, '\0');
+  for (const float number : {0.02F, 1e6F}) append_number(bytes, number);
+  const WallFaces faces = wall_faces_from_bytes(bytes, "map.svx");
+  EXPECT_FLOAT_EQ(static_cast<float>(faces.reach_m({7, 0}, kTowardsCamera).value()), -0.02F);
+}
+
 TEST(WallFaces, DamagedBytesAreErrors) {
   const std::string good = to_bytes(faces_of_wall(0.0, 1.98));
   for (std::size_t length = 0; length < good.size(); length += 7)
     EXPECT_THROW(wall_faces_from_bytes(good.substr(0, length), "map.svx"), Error) << length;
   EXPECT_THROW(wall_faces_from_bytes(good + "x", "map.svx"), Error);
   std::string without_faces = good;
-  constexpr std::size_t kFirstMask = 13 + 4 + 2 * 4, kMaskBytes = 32;
+  constexpr std::size_t kSlices = 13, kTiles = kSlices + 2 * 4;
+  constexpr std::size_t kFirstMask = kTiles + 4 + 2 * 4, kMaskBytes = 32;
   without_faces.resize(kFirstMask + kMaskBytes);
-  without_faces.replace(13, 4, std::string("\1\0\0\0", 4));
+  for (const std::size_t count : {kSlices, kTiles})
+    without_faces.replace(count, 4, std::string("\1\0\0\0", 4));
   without_faces.replace(kFirstMask, kMaskBytes, std::string(kMaskBytes, '\0'));
   EXPECT_THROW(wall_faces_from_bytes(without_faces, "map.svx"), Error);
   std::string not_a_number = good;
