@@ -16,22 +16,34 @@ constexpr double kFaceCell_m = 0.25;
 constexpr NavmapParams kParams{.min_reach = 0.1};
 const Eigen::Vector2i kTowardsCamera(-1, 0), kAway(1, 0);
 
-// A wall across the view of a camera at `camera_x_m`, `depth_m` away; each pixel has an error.
-WallFaces faces_of_wall(double camera_x_m, double depth_m, bool looks_back = false) {
+WallFaces faces_of(const DisparityImage& image, const SE3& T_world_camera, int frames) {
   OccupancyParams occupancy;
   occupancy.voxel_size_m = kFaceCell_m;
   VoxelMap map(kFaceCell_m);
+  const RectifiedCamera camera = scene::camera();
+  WallFaces faces;
+  for (int frame = 0; frame < frames; ++frame)
+    faces.observe(
+        view_frame(image, camera, T_world_camera, frame * scene::kSecond_ns, occupancy, map), 0.0,
+        kParams);
+  return faces;
+}
+
+// What a camera at x = 0 that looks along `yaw_rad` sees for some time.
+WallFaces faces_of(const DisparityImage& image, double yaw_rad = 0.0) {
+  constexpr int kFrames = 20;
+  return faces_of(image, scene::level_pose(yaw_rad), kFrames);
+}
+
+// A wall across the view of a camera at `camera_x_m`, `depth_m` away; each pixel has an error.
+WallFaces faces_of_wall(double camera_x_m, double depth_m, bool looks_back = false) {
+  constexpr int kFrames = 5;
   std::mt19937 random(3);
   std::normal_distribution<float> noise_px(0.0F, 0.3F);
   DisparityImage image = scene::wall_at(depth_m);
   for (float& disparity : image.disparity_px) disparity += noise_px(random);
-  const RectifiedCamera camera = scene::camera();
-  const SE3 pose = scene::level_pose(looks_back ? std::numbers::pi : 0.0, {camera_x_m, 0, 1});
-  WallFaces faces;
-  for (int frame = 0; frame < 5; ++frame)
-    faces.observe(view_frame(image, camera, pose, frame * scene::kSecond_ns, occupancy, map), 0.0,
-                  kParams);
-  return faces;
+  const double yaw_rad = looks_back ? std::numbers::pi : 0.0;
+  return faces_of(image, scene::level_pose(yaw_rad, {camera_x_m, 0, 1}), kFrames);
 }
 
 TEST(WallFaces, TellOnWhichSideOfABorderAWallStands) {
@@ -56,20 +68,6 @@ TEST(WallFaces, FromTheOtherSideTheSignIsTheOther) {
   const auto reach = faces_of_wall(4.0, 1.97, true).reach_m({8, 0}, kAway);
   ASSERT_TRUE(reach.has_value());
   EXPECT_NEAR(*reach, 0.03, 0.01);
-}
-
-// What a camera at x = 0 that looks along `yaw_rad` sees for some time.
-WallFaces faces_of(const DisparityImage& image, double yaw_rad = 0.0) {
-  OccupancyParams occupancy;
-  occupancy.voxel_size_m = kFaceCell_m;
-  VoxelMap map(kFaceCell_m);
-  const RectifiedCamera camera = scene::camera();
-  const SE3 pose = scene::level_pose(yaw_rad, {0, 0, 1});
-  WallFaces faces;
-  for (int frame = 0; frame < 20; ++frame)
-    faces.observe(view_frame(image, camera, pose, frame * scene::kSecond_ns, occupancy, map), 0.0,
-                  kParams);
-  return faces;
 }
 
 TEST(WallFaces, AShelfCountsHoweverMuchWallIsBelowIt) {
