@@ -27,7 +27,7 @@ struct Front {
 class ThinWalls {
  public:
   ThinWalls(OccupancyGrid2D& map, const WallFaces& faces, const NavmapParams& params)
-      : map_(map), faces_(faces), params_(params), labels_(map.labels) {}
+      : map_(map), faces_(faces), params_(params), labels_(map.labels), states_(map.states) {}
 
   // Nothing that was changed is looked at again: the cells of the map change in `finish`.
   void look_at(const Front& front) {
@@ -46,6 +46,7 @@ class ThinWalls {
 
   std::vector<std::size_t> finish() {
     map_.labels = std::move(labels_);
+    map_.states = std::move(states_);
     return std::move(doubtful_);
   }
 
@@ -54,8 +55,10 @@ class ThinWalls {
     return map_.label_at(cell) == label;
   }
   double state_of(const Eigen::Vector2i& cell) const { return map_.states[map_.position_of(cell)]; }
-  void set(const Eigen::Vector2i& cell, CellLabel label) {
+  // As the cell `like` is.
+  void set(const Eigen::Vector2i& cell, CellLabel label, const Eigen::Vector2i& like) {
     labels_[map_.position_of(cell)] = label;
+    states_[map_.position_of(cell)] = map_.states[map_.position_of(like)];
   }
   double min_reach_m() const { return params_.min_reach * map_.geometry.cell_size_m; }
 
@@ -66,8 +69,9 @@ class ThinWalls {
 
   void judge_occupied(const Front& front, double reach_m) {
     if (reach_m > min_reach_m()) return;
-    set(front.cell, CellLabel::free);
-    set(front.behind(), CellLabel::occupied);
+    set(front.cell, CellLabel::free, front.before());
+    const bool was_occupied = is(front.behind(), CellLabel::occupied);
+    set(front.behind(), CellLabel::occupied, was_occupied ? front.behind() : front.cell);
     if (reach_m > 0.0) doubtful_.push_back(map_.position_of(front.cell));
   }
 
@@ -75,21 +79,22 @@ class ThinWalls {
     if (state_of(front.cell) <= kMinReachedState || !is(front.behind(), CellLabel::occupied))
       return;
     if (reach_m > min_reach_m())
-      set(front.cell, CellLabel::occupied);
+      set(front.cell, CellLabel::occupied, front.behind());
     else if (reach_m > -params_.face_bias_m)
-      set(front.cell, CellLabel::unknown);
+      set(front.cell, CellLabel::unknown, front.cell);
   }
 
   void judge_by_contrast(const Front& front) {
     if (is(front.cell, CellLabel::occupied) && is(front.behind(), CellLabel::occupied) &&
         state_of(front.behind()) > state_of(front.cell) + params_.wall_contrast)
-      set(front.cell, CellLabel::free);
+      set(front.cell, CellLabel::free, front.before());
   }
 
   OccupancyGrid2D& map_;
   const WallFaces& faces_;
   const NavmapParams& params_;
   std::vector<CellLabel> labels_;
+  std::vector<float> states_;
   std::vector<std::size_t> doubtful_;
 };
 

@@ -22,6 +22,8 @@ namespace stereovox {
 // cell that is really filled is nearer to those who look and collects more evidence than the one
 // behind.
 //
+// Cells that change take the state of their kind: of the free cell before, or of the occupied one.
+//
 // Returns the positions of cells that are free or occupied, nobody knows: they are labelled free
 // until it is found what free space touches.
 std::vector<std::size_t> thin_walls(OccupancyGrid2D& map, const WallFaces& faces,

@@ -96,6 +96,15 @@ TEST(ThinWalls, AWallInTheWrongLayerMoves) {
   EXPECT_EQ(placed("..#.", 0.9F, 2.02), (Drawing{"..#."}));
 }
 
+TEST(ThinWalls, StatesMoveWithTheWall) {
+  OccupancyGrid2D map = drawn_grid({"..#?"}, kCell_m, {5 * kCell_m, 0});
+  map.states[map.position_of({1, 0})] = 0.1F;
+  map.states[map.position_of({2, 0})] = 0.9F;
+  thin_walls(map, faces_of_wall(2.02), {.min_reach = 0.1});
+  EXPECT_EQ(map.states[map.position_of({2, 0})], 0.1F);
+  EXPECT_EQ(map.states[map.position_of({3, 0})], 0.9F);
+}
+
 TEST(ThinWalls, WhereAWallStandsAtTheBorderTheCellBeforeItIsNotCalledFree) {
   EXPECT_EQ(placed("..##", 0.9F, 1.985), (Drawing{"..?#"}));
   EXPECT_EQ(placed("...#", 0.4F, 2.005), (Drawing{"..?#"}));
