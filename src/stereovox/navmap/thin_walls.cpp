@@ -1,6 +1,7 @@
 #include "stereovox/navmap/thin_walls.h"
 
 #include <array>
+#include <optional>
 
 #include "stereovox/core/grid_geometry.h"
 
@@ -32,10 +33,7 @@ class ThinWalls {
   // Nothing that was changed is looked at again: the cells of the map change in `finish`.
   void look_at(const Front& front) {
     if (!is_front(front)) return;
-    const GridGeometry& geometry = map_.geometry;
-    const Eigen::Vector2i first_cell =
-        (geometry.origin_m / geometry.cell_size_m).array().round().cast<int>();
-    const auto reach_m = faces_.reach_m(first_cell + front.cell, front.step);
+    const auto reach_m = reach_into(front);
     if (!reach_m)
       judge_by_contrast(front);
     else if (is(front.cell, CellLabel::occupied))
@@ -60,6 +58,12 @@ class ThinWalls {
     labels_[map_.position_of(cell)] = label;
     states_[map_.position_of(cell)] = map_.states[map_.position_of(like)];
   }
+  std::optional<double> reach_into(const Front& front) const {
+    const GridGeometry& geometry = map_.geometry;
+    const Eigen::Vector2i first_cell =
+        (geometry.origin_m / geometry.cell_size_m).array().round().cast<int>();
+    return faces_.reach_m(first_cell + front.cell, front.step);
+  }
   double min_reach_m() const { return params_.min_reach * map_.geometry.cell_size_m; }
 
   bool is_front(const Front& front) const {
@@ -67,8 +71,16 @@ class ThinWalls {
            is(front.before(), CellLabel::free) && !is(front.behind(), CellLabel::free);
   }
 
+  // Whether the free space behind sees the same border before it: a thin wall stands on it.
+  bool is_seen_from_behind(const Front& front) const {
+    const Front opposite = {front.behind(), -front.step};
+    if (!is_front(opposite) || !is(opposite.cell, CellLabel::occupied)) return false;
+    const auto reach_m = reach_into(opposite);
+    return reach_m && *reach_m <= min_reach_m();
+  }
+
   void judge_occupied(const Front& front, double reach_m) {
-    if (reach_m > min_reach_m()) return;
+    if (reach_m > min_reach_m() || is_seen_from_behind(front)) return;
     set(front.cell, CellLabel::free, front.before());
     const bool was_occupied = is(front.behind(), CellLabel::occupied);
     set(front.behind(), CellLabel::occupied, was_occupied ? front.behind() : front.cell);

@@ -14,7 +14,8 @@ namespace stereovox {
 // not free. Where it is known how far the surfaces seen from the free side reach into it
 // (WallFaces::reach_m):
 //   an occupied cell that they reach into by at most params.min_reach of its edge is free, and what
-//   lies behind it is occupied; it is returned when they cross the border all the same;
+//   lies behind it is occupied; it is returned when they cross the border all the same. Both cells
+//   stay where the same is seen from behind, of a thin wall on the border;
 //   another cell with some evidence, before an occupied one, is occupied when they reach into it
 //   farther, and unknown when they stay behind it by less than params.face_bias_m.
 // Elsewhere an occupied cell becomes free when the state of an occupied one behind it is higher by

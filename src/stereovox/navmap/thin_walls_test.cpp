@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "stereovox/navmap/drawn_map_for_test.h"
 #include "stereovox/occupancy/scene_for_test.h"
 
@@ -48,18 +50,23 @@ TEST(ThinWalls, CellsAtTheBorderOfTheMapStay) {
 
 constexpr double kCell_m = 0.25;
 
-// Faces of a wall that a camera at x = 0 sees at `wall_x_m`.
-WallFaces faces_of_wall(double wall_x_m) {
+// Adds the faces of a wall that a camera there sees at this depth.
+void observe_wall(const SE3& T_world_camera, double depth_m, WallFaces& faces) {
   OccupancyParams occupancy;
   occupancy.voxel_size_m = kCell_m;
   VoxelMap map(kCell_m);
-  const DisparityImage image = scene::wall_at(wall_x_m);
+  const DisparityImage image = scene::wall_at(depth_m);
   const RectifiedCamera camera = scene::camera();
-  WallFaces faces;
   for (int frame = 0; frame < 5; ++frame)
     faces.observe(
-        view_frame(image, camera, scene::level_pose(), frame * scene::kSecond_ns, occupancy, map),
-        0.0, {});
+        view_frame(image, camera, T_world_camera, frame * scene::kSecond_ns, occupancy, map), 0.0,
+        {});
+}
+
+// Of a wall that a camera at x = 0 sees at `wall_x_m`.
+WallFaces faces_of_wall(double wall_x_m) {
+  WallFaces faces;
+  observe_wall(scene::level_pose(), wall_x_m, faces);
   return faces;
 }
 
@@ -94,6 +101,14 @@ TEST(ThinWalls, AWallInTheWrongLayerMoves) {
   EXPECT_EQ(placed("..#?", 0.9F, 1.985), (Drawing{"..?#"}));
   EXPECT_EQ(placed("..#?", 0.9F, 2.02), (Drawing{"...#"}));
   EXPECT_EQ(placed("..#.", 0.9F, 2.02), (Drawing{"..#."}));
+}
+
+TEST(ThinWalls, ABoardOnTheBorderThatIsSeenFromBothSidesStays) {
+  OccupancyGrid2D map = drawn_grid({"..##.."}, kCell_m, {5 * kCell_m, 0});
+  WallFaces faces = faces_of_wall(1.985);
+  observe_wall(scene::level_pose(std::numbers::pi, {4, 0, 1}), 1.985, faces);
+  EXPECT_TRUE(thin_walls(map, faces, {.min_reach = 0.1}).empty());
+  EXPECT_EQ(drawing_of(map), (Drawing{"..##.."}));
 }
 
 TEST(ThinWalls, StatesMoveWithTheWall) {
