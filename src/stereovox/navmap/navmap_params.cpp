@@ -62,7 +62,7 @@ void NavmapParams::describe(ParameterList& list) {
        "an occupied cell stays so until its state is below threshold by this much");
   list("label_rule", label_rule, "which cells become free");
   list("wall_contrast", wall_contrast, {0, 1},
-       "a cell before an obstacle whose state is higher by more than this is free; 1 = never");
+       "a cell before an obstacle whose state is higher by more than this is unknown; 1 = never");
   list("min_reach", min_reach, {0, 1},
        "a surface occupies a cell when the mean of its points reaches into it by more than this "
        "share of its edge; 1 = states alone decide");

@@ -58,6 +58,10 @@ class ThinWalls {
     labels_[map_.position_of(cell)] = label;
     states_[map_.position_of(cell)] = map_.states[map_.position_of(like)];
   }
+  void free_in_doubt(const Front& front) {
+    set(front.cell, CellLabel::free, front.before());
+    doubtful_.push_back(map_.position_of(front.cell));
+  }
   std::optional<double> reach_into(const Front& front) const {
     const GridGeometry& geometry = map_.geometry;
     const Eigen::Vector2i first_cell =
@@ -81,10 +85,12 @@ class ThinWalls {
 
   void judge_occupied(const Front& front, double reach_m) {
     if (reach_m > min_reach_m() || is_seen_from_behind(front)) return;
-    set(front.cell, CellLabel::free, front.before());
+    if (reach_m > 0.0)
+      free_in_doubt(front);
+    else
+      set(front.cell, CellLabel::free, front.before());
     const bool was_occupied = is(front.behind(), CellLabel::occupied);
     set(front.behind(), CellLabel::occupied, was_occupied ? front.behind() : front.cell);
-    if (reach_m > 0.0) doubtful_.push_back(map_.position_of(front.cell));
   }
 
   void judge_other(const Front& front, double reach_m) {
@@ -99,7 +105,7 @@ class ThinWalls {
   void judge_by_contrast(const Front& front) {
     if (is(front.cell, CellLabel::occupied) && is(front.behind(), CellLabel::occupied) &&
         state_of(front.behind()) > state_of(front.cell) + params_.wall_contrast)
-      set(front.cell, CellLabel::free, front.before());
+      free_in_doubt(front);
   }
 
   OccupancyGrid2D& map_;

@@ -18,10 +18,8 @@ namespace stereovox {
 //   stay where the same is seen from behind, of a thin wall on the border;
 //   another cell with some evidence, before an occupied one, is occupied when they reach into it
 //   farther, and unknown when they stay behind it by less than params.face_bias_m.
-// Elsewhere an occupied cell becomes free when the state of an occupied one behind it is higher by
-// more than params.wall_contrast: what was measured in it is the error of the surface behind. A
-// cell that is really filled is nearer to those who look and collects more evidence than the one
-// behind.
+// Elsewhere an occupied cell is returned when the state of an occupied one behind it is higher by
+// more than params.wall_contrast: what was measured in it may be the error of the surface behind.
 //
 // Cells that change take the state of their kind: of the free cell before, or of the occupied one.
 //

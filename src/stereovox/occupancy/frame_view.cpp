@@ -78,20 +78,29 @@ std::optional<Segment> within_heights(const FrameView& frame, const PointMeasure
                  frame.T_world_camera.translation + stretch.end_m * point.ray_world};
 }
 
+// The error that lets a camera see across a small room, or that of a good one.
+double sigma_across_a_room_m(const RectifiedCamera& camera) {
+  constexpr double kRoom_m = 4.0, kError_px = 0.5, kLeast_m = 0.125;
+  return std::max(kLeast_m, kRoom_m * kRoom_m / camera.depth_m(kError_px));
+}
+
 }  // namespace
 
 OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera& camera) {
   constexpr double kLeastDepth_m = 8.0, kLeastClearing_m = 5.0;
   constexpr double kLeastOfSurface_px = 8.0, kLeastOfFreeSpace_px = 13.0;
   const double sigma_px = params.error_model.min_sigma_disparity_px;
-  const double exact_m = std::sqrt(max_sigma_m(params) * camera.depth_m(sigma_px));
-  const auto range_m = [&](double least_m, double least_px) {
+  const auto range_m = [&](double least_m, double least_px, double largest_sigma_m) {
+    const double exact_m = std::sqrt(largest_sigma_m * camera.depth_m(sigma_px));
     return std::max(least_m, std::min(camera.depth_m(least_px), exact_m));
   };
   OccupancyParams ranged = params;
-  if (params.max_depth_m == 0.0) ranged.max_depth_m = range_m(kLeastDepth_m, kLeastOfSurface_px);
+  if (params.max_sigma_m == 0.0) ranged.max_sigma_m = sigma_across_a_room_m(camera);
+  if (params.max_depth_m == 0.0)
+    ranged.max_depth_m = range_m(kLeastDepth_m, kLeastOfSurface_px, max_sigma_m(ranged));
   if (params.max_clearing_m == 0.0)
-    ranged.max_clearing_m = range_m(kLeastClearing_m, kLeastOfFreeSpace_px);
+    ranged.max_clearing_m =
+        range_m(kLeastClearing_m, kLeastOfFreeSpace_px, 2 * params.voxel_size_m);
   return ranged;
 }
 
@@ -149,7 +158,9 @@ std::optional<PointMeasurement> measure_pixel(const FrameView& frame, int u, int
 }
 
 double max_sigma_m(const OccupancyParams& params) {
-  return params.max_sigma_half_voxels * 0.5 * params.voxel_size_m;
+  const double half_voxel_m = 0.5 * params.voxel_size_m;
+  return std::min(params.max_sigma_half_voxels * half_voxel_m,
+                  std::max(params.max_sigma_m, half_voxel_m));
 }
 
 bool marks_surface(const FrameView& frame, const PointMeasurement& point) {

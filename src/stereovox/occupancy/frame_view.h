@@ -22,10 +22,11 @@ struct SamplingSteps {
   int surface_px = 1, ray_px = 1;
 };
 
-// The parameters with the ranges set that they leave open (0). Cameras whose lines of sight part
+// The parameters with the limits set that they leave open (0). Cameras whose lines of sight part
 // widely measure farther: such a range ends where disparities become small (8 px for surfaces, 13
-// for free space) or errors exceed max_sigma_half_voxels. The ranges for a small robot's camera
-// indoors, 8 and 5 m, are the least.
+// for free space) or errors exceed max_sigma_m(), for free space two voxels. The ranges for a small
+// robot's camera indoors, 8 and 5 m, are the least. Errors may be as large as half a pixel makes
+// them at 4 m, at least 12.5 cm.
 OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera& camera);
 
 // As the parameters say, or where they leave it open (0): rays about one voxel apart at the
@@ -69,7 +70,7 @@ inline int first_sample(int step) { return step / 2; }
 // is nearer than min_depth_m or below the lowest height.
 std::optional<PointMeasurement> measure_pixel(const FrameView& frame, int u, int v);
 
-// Measurements whose range has a larger error only clear space.
+// Measurements whose range has a larger error only clear space. Needs the limits set.
 double max_sigma_m(const OccupancyParams& params);
 
 // Whether the point is certain, near and low enough to mark a surface; if not, it only clears.

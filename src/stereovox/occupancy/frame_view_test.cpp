@@ -50,6 +50,34 @@ TEST(Ranges, OfFreeSpaceEndWhereTheErrorIsTwoVoxels) {
   EXPECT_NEAR(range_m * range_m * 0.25 / (707.0 * 0.54), 2 * 0.05, 1e-12);
 }
 
+TEST(Ranges, OfSurfacesEndWhereTheErrorExceedsALimit) {
+  const RectifiedCamera car = {{1226, 370, 707.0, 707.0, 613.0, 185.0}, 0.54};
+  const auto sigma_at_end_m = [&](double max_sigma_m) {
+    OccupancyParams params = open_ranges(0.05);
+    params.max_sigma_m = max_sigma_m;
+    const double range_m = with_ranges(params, car).max_depth_m;
+    return range_m * range_m * 0.25 / (707.0 * 0.54);
+  };
+  EXPECT_NEAR(sigma_at_end_m(0.2), 4 * 0.025, 1e-12);
+  EXPECT_NEAR(sigma_at_end_m(0.07), 0.07, 1e-12);
+  EXPECT_NEAR(sigma_at_end_m(0.045), 0.045, 1e-12);
+}
+
+TEST(Ranges, ErrorsBelowHalfAVoxelAlwaysCount) {
+  OccupancyParams params = open_ranges(0.05);
+  params.max_sigma_m = 0.01;
+  EXPECT_EQ(max_sigma_m(params), 0.025);
+}
+
+TEST(Ranges, AnOpenLimitOfTheErrorLetsWeakCamerasSeeAcrossARoom) {
+  OccupancyParams params = open_ranges(0.25);
+  params.max_sigma_m = 0.0;
+  const RectifiedCamera weak = {{320, 240, 250.0, 250.0, 159.5, 119.5}, 0.08},
+                        good = {{640, 480, 700.0, 700.0, 319.5, 239.5}, 0.12};
+  EXPECT_DOUBLE_EQ(with_ranges(params, weak).max_sigma_m, 16.0 * 0.5 / 20.0);
+  EXPECT_EQ(with_ranges(params, good).max_sigma_m, 0.125);
+}
+
 TEST(Ranges, StayAsGiven) {
   const OccupancyParams given =
       with_ranges(params_with_steps(0, 0), camera_with_focal_length(5000));

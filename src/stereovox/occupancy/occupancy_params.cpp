@@ -26,7 +26,8 @@ OccupancyParams literal_params() {
 }
 
 // A neutral start needs fewer frames to decide; rays that end farther before the surface, and
-// points that must be a tenth of those near a voxel, keep surfaces thin although far points count.
+// points that must be a tenth of those near a voxel, keep surfaces thin. What is measured from so
+// far that it may lie a hand's breadth away is left to be seen again from nearer.
 // Homogeneity is left out: it kept thin things from ever entering the map. Free space is read from
 // the image as a whole, which costs a fraction of the rays and clears no voxel that few rays graze.
 // Points of one surface are averaged a little, which their noise, but no edge, notices.
@@ -36,10 +37,12 @@ OccupancyParams tuned_params() {
   p.observed_set = ObservedSet::projected;
   p.smoothing.radius_px = 2;
   p.max_sigma_half_voxels = 4.0;
+  p.max_sigma_m = 0.0;
   p.free_margin_sigmas = 2.0;
   p.union_rule = RankUnion{.quantile = 0.01, .majority = 0.1};
   p.homogeneity.min_homogeneity = 1.0;
-  p.update = SaturatingRule{.max_credibility = 0.1};
+  p.density = RelativeDensity{.lambda = 0.3};
+  p.update = SaturatingRule{.max_credibility = 0.12};
   p.initial_state = 0.5;
   return p;
 }
@@ -67,10 +70,14 @@ void describe_selection(OccupancyParams& p, ParameterList& list) {
   list("max_depth_m", p.max_depth_m, {0, 200},
        "farther measurements only clear space; 0 = up to disparities of 8 px, at least 8 m");
   list("max_clearing_m", p.max_clearing_m, {0, 200},
-       "space farther away is never cleared; 0 = up to disparities of 13 px and errors of "
-       "max_sigma_half_voxels, at least 5 m");
+       "space farther away is never cleared; 0 = up to disparities of 13 px and errors of two "
+       "voxels, at least 5 m");
   list("max_sigma_half_voxels", p.max_sigma_half_voxels, {0.1, kNoSigmaLimit_half_voxels},
        "measurements with a larger error of the range only clear space; in half voxel edges");
+  list(
+      "max_sigma_m", p.max_sigma_m, {0, kNoSigmaLimit_m},
+      "likewise, but errors below half a voxel always count; 0 = the error of half a pixel at 4 m, "
+      "at least 0.125 m");
   list("min_height_m", p.min_height_m, {-100, 100},
        "measurements lower above the floor are ignored, as mirror images");
   list("max_height_m", p.max_height_m, {-100, 100}, "space higher above the floor is left alone");
@@ -103,6 +110,7 @@ void apply_preset(OccupancyPreset preset, OccupancyParams& params) {
   params.preset = preset;
   params.smoothing = chosen.smoothing;
   params.max_sigma_half_voxels = chosen.max_sigma_half_voxels;
+  params.max_sigma_m = chosen.max_sigma_m;
   params.error_model.noise = chosen.error_model.noise;
   params.error_model.depth_variance = chosen.error_model.depth_variance;
   params.observation = chosen.observation;

@@ -28,6 +28,8 @@ std::span<const std::string> names_of(OccupancyPreset);
 enum class ObservedSet { raycast, projected, frustum, all };
 std::span<const std::string> names_of(ObservedSet);
 
+inline constexpr double kNoSigmaLimit_m = 100.0;
+
 struct OccupancyParams {
   OccupancyPreset preset = OccupancyPreset::corrected;
   double voxel_size_m = 0.05;
@@ -38,6 +40,7 @@ struct OccupancyParams {
   double max_depth_m = 0.0;     // 0: see with_ranges
   double max_clearing_m = 0.0;  // likewise
   double max_sigma_half_voxels = 3.0;
+  double max_sigma_m = kNoSigmaLimit_m;
   double min_height_m = -0.2;
   double max_height_m = 2.0;
 

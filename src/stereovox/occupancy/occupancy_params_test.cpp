@@ -77,8 +77,9 @@ TEST(OccupancyParams, TunedHasTheChoicesOfCorrectedAndOtherNumbers) {
     if (a.parameters()[i].get() != b.parameters()[i].get())
       different += a.parameters()[i].path + " ";
   EXPECT_EQ(different,
-            "preset max_sigma_half_voxels smoothing.radius_px union.quantile union.majority "
-            "observed_set free_margin_sigmas homogeneity.min_homogeneity update.max_credibility "
+            "preset max_sigma_half_voxels max_sigma_m smoothing.radius_px union.quantile "
+            "union.majority density.lambda observed_set free_margin_sigmas "
+            "homogeneity.min_homogeneity update.max_credibility "
             "initial_state ");
 }
 
