@@ -92,15 +92,15 @@ std::optional<PatchTemplate> cut_patch(const cv::Mat1b& image, const Eigen::Vect
   for (int y = -r; y <= r; ++y)
     for (int x = -r; x <= r; ++x) {
       const Eigen::Vector2d p = center_px + source_from_patch * Eigen::Vector2d(x, y);
-      bordered[static_cast<std::size_t>((y + r) * side + x + r)] =
-          interpolated(image, p.x(), p.y());
+      const int place = (y + r) * side + x + r;
+      bordered[static_cast<std::size_t>(place)] = interpolated(image, p.x(), p.y());
     }
 
   PatchTemplate patch{Patch::Zero(), Patch::Zero(), Patch::Zero(), 0.0F};
   int i = 0;
   for (int y = 1; y + 1 < side; ++y)
     for (int x = 1; x + 1 < side; ++x, ++i) {
-      const float* at = &bordered[static_cast<std::size_t>(y * side + x)];
+      const float* const at = bordered.data() + y * side + x;
       patch.value[i] = at[0];
       patch.gradient_u[i] = 0.5F * (at[1] - at[-1]);
       patch.gradient_v[i] = 0.5F * (at[side] - at[-side]);

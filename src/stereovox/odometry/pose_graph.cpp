@@ -94,6 +94,7 @@ void add_link(const PoseLink& link, std::span<const SE3> poses, const std::vecto
 // The place of each pose among the unknowns; -1 for a fixed one.
 std::vector<int> numbered(const std::vector<bool>& is_fixed) {
   std::vector<int> unknown;
+  unknown.reserve(is_fixed.size());
   for (int count = 0; const bool fixed : is_fixed) unknown.push_back(fixed ? -1 : count++);
   return unknown;
 }

@@ -108,7 +108,7 @@ OccupancyGrid2D write_navigation_map(const fs::path& yaml_path, const VoxelMap& 
                                      const SightLines& sight_lines, const WallFaces& wall_faces,
                                      const Trajectory& trajectory, const NavmapParams& params,
                                      MapServerMode mode) {
-  const OccupancyGrid2D grid = project_to_2d(map, sight_lines, params, wall_faces);
+  OccupancyGrid2D grid = project_to_2d(map, sight_lines, params, wall_faces);
   std::vector<Eigen::Vector2d> path;
   for (const StampedPose& pose : trajectory)
     path.emplace_back(pose.T_world_camera.translation.head<2>());

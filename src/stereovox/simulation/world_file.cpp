@@ -22,7 +22,7 @@ constexpr std::uint64_t kMaxWorldBytes = 16ULL << 20;
 // Reads a world's parts one after the other; knows where it is for messages.
 class WorldReader {
  public:
-  WorldReader(YAML::Node root, std::string source)
+  WorldReader(const YAML::Node& root, std::string source)
       : source_(std::move(source)), root_(root, source_, "world") {}
 
   World read() {
