@@ -78,10 +78,14 @@ std::optional<Segment> within_heights(const FrameView& frame, const PointMeasure
                  frame.T_world_camera.translation + stretch.end_m * point.ray_world};
 }
 
-// The error that lets a camera see across a small room, or that of a good one.
-double sigma_across_a_room_m(const RectifiedCamera& camera) {
-  constexpr double kRoom_m = 4.0, kError_px = 0.5, kLeast_m = 0.125;
-  return std::max(kLeast_m, kRoom_m * kRoom_m / camera.depth_m(kError_px));
+// The error of half a pixel at 4 m, so that weak cameras see across a room, or of a quarter of a
+// pixel where disparities are 11 px, which is farther away for wide rigs. At least 12.8 cm.
+double largest_sigma_m(const RectifiedCamera& camera) {
+  constexpr double kRoom_m = 4.0, kLeast_px = 11.0;
+  const auto sigma_m = [&](double depth_m, double sigma_px) {
+    return depth_m * depth_m / camera.depth_m(sigma_px);
+  };
+  return std::max(sigma_m(kRoom_m, 0.5), sigma_m(camera.depth_m(kLeast_px), 0.25));
 }
 
 }  // namespace
@@ -90,12 +94,12 @@ OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera
   constexpr double kLeastDepth_m = 8.0, kLeastClearing_m = 5.0;
   constexpr double kLeastOfSurface_px = 8.0, kLeastOfFreeSpace_px = 13.0;
   const double sigma_px = params.error_model.min_sigma_disparity_px;
-  const auto range_m = [&](double least_m, double least_px, double largest_sigma_m) {
-    const double exact_m = std::sqrt(largest_sigma_m * camera.depth_m(sigma_px));
+  const auto range_m = [&](double least_m, double least_px, double sigma_m) {
+    const double exact_m = std::sqrt(sigma_m * camera.depth_m(sigma_px));
     return std::max(least_m, std::min(camera.depth_m(least_px), exact_m));
   };
   OccupancyParams ranged = params;
-  if (params.max_sigma_m == 0.0) ranged.max_sigma_m = sigma_across_a_room_m(camera);
+  if (params.max_sigma_m == 0.0) ranged.max_sigma_m = largest_sigma_m(camera);
   if (params.max_depth_m == 0.0)
     ranged.max_depth_m = range_m(kLeastDepth_m, kLeastOfSurface_px, max_sigma_m(ranged));
   if (params.max_clearing_m == 0.0)

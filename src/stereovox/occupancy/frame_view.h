@@ -25,8 +25,8 @@ struct SamplingSteps {
 // The parameters with the limits set that they leave open (0). Cameras whose lines of sight part
 // widely measure farther: such a range ends where disparities become small (8 px for surfaces, 13
 // for free space) or errors exceed max_sigma_m(), for free space two voxels. The ranges for a small
-// robot's camera indoors, 8 and 5 m, are the least. Errors may be as large as half a pixel makes
-// them at 4 m, at least 12.5 cm.
+// robot's camera indoors, 8 and 5 m, are the least. max_sigma_m becomes the error of half a pixel
+// at 4 m, or of a quarter of one where disparities are 11 px.
 OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera& camera);
 
 // As the parameters say, or where they leave it open (0): rays about one voxel apart at the

@@ -69,13 +69,15 @@ TEST(Ranges, ErrorsBelowHalfAVoxelAlwaysCount) {
   EXPECT_EQ(max_sigma_m(params), 0.025);
 }
 
-TEST(Ranges, AnOpenLimitOfTheErrorLetsWeakCamerasSeeAcrossARoom) {
+TEST(Ranges, AnOpenLimitOfTheErrorSuitsTheCamera) {
   OccupancyParams params = open_ranges(0.25);
   params.max_sigma_m = 0.0;
   const RectifiedCamera weak = {{320, 240, 250.0, 250.0, 159.5, 119.5}, 0.08},
-                        good = {{640, 480, 700.0, 700.0, 319.5, 239.5}, 0.12};
+                        usual = {{640, 480, 525.0, 525.0, 319.5, 239.5}, 0.12},
+                        wide = {{640, 480, 700.0, 700.0, 319.5, 239.5}, 0.5};
   EXPECT_DOUBLE_EQ(with_ranges(params, weak).max_sigma_m, 16.0 * 0.5 / 20.0);
-  EXPECT_EQ(with_ranges(params, good).max_sigma_m, 0.125);
+  EXPECT_NEAR(with_ranges(params, usual).max_sigma_m, 0.13, 0.001);
+  EXPECT_DOUBLE_EQ(with_ranges(params, wide).max_sigma_m, 350.0 * 0.25 / (11.0 * 11.0));
 }
 
 TEST(Ranges, StayAsGiven) {

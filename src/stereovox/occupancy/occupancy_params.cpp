@@ -77,7 +77,7 @@ void describe_selection(OccupancyParams& p, ParameterList& list) {
   list(
       "max_sigma_m", p.max_sigma_m, {0, kNoSigmaLimit_m},
       "likewise, but errors below half a voxel always count; 0 = the error of half a pixel at 4 m, "
-      "at least 0.125 m");
+      "or of a quarter of one at disparities of 11 px");
   list("min_height_m", p.min_height_m, {-100, 100},
        "measurements lower above the floor are ignored, as mirror images");
   list("max_height_m", p.max_height_m, {-100, 100}, "space higher above the floor is left alone");
