@@ -81,11 +81,13 @@ std::optional<Segment> within_heights(const FrameView& frame, const PointMeasure
 // The error of half a pixel at 4 m, so that weak cameras see across a room, or of a quarter of a
 // pixel where disparities are 11 px, which is farther away for wide rigs. At least 12.8 cm.
 double largest_sigma_m(const RectifiedCamera& camera) {
-  constexpr double kRoom_m = 4.0, kLeast_px = 11.0;
+  constexpr double kRoom_m = 4.0, kErrorInRoom_px = 0.5;
+  constexpr double kLeast_px = 11.0, kErrorAtLeast_px = 0.25;
   const auto sigma_m = [&](double depth_m, double sigma_px) {
     return depth_m * depth_m / camera.depth_m(sigma_px);
   };
-  return std::max(sigma_m(kRoom_m, 0.5), sigma_m(camera.depth_m(kLeast_px), 0.25));
+  return std::max(sigma_m(kRoom_m, kErrorInRoom_px),
+                  sigma_m(camera.depth_m(kLeast_px), kErrorAtLeast_px));
 }
 
 }  // namespace
@@ -93,6 +95,7 @@ double largest_sigma_m(const RectifiedCamera& camera) {
 OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera& camera) {
   constexpr double kLeastDepth_m = 8.0, kLeastClearing_m = 5.0;
   constexpr double kLeastOfSurface_px = 8.0, kLeastOfFreeSpace_px = 13.0;
+  constexpr double kSigmaOfFreeSpace_voxels = 2.0;
   const double sigma_px = params.error_model.min_sigma_disparity_px;
   const auto range_m = [&](double least_m, double least_px, double sigma_m) {
     const double exact_m = std::sqrt(sigma_m * camera.depth_m(sigma_px));
@@ -103,8 +106,8 @@ OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera
   if (params.max_depth_m == 0.0)
     ranged.max_depth_m = range_m(kLeastDepth_m, kLeastOfSurface_px, max_sigma_m(ranged));
   if (params.max_clearing_m == 0.0)
-    ranged.max_clearing_m =
-        range_m(kLeastClearing_m, kLeastOfFreeSpace_px, 2 * params.voxel_size_m);
+    ranged.max_clearing_m = range_m(kLeastClearing_m, kLeastOfFreeSpace_px,
+                                    kSigmaOfFreeSpace_voxels * params.voxel_size_m);
   return ranged;
 }
 
