@@ -93,23 +93,32 @@ struct Pair {
          view.center_offset[static_cast<std::size_t>(axis)];
 }
 
-constexpr std::size_t kLayer = kBlockSide * kBlockSide;
+// Blocks are asked by their eighths, of which few are as mixed as the whole.
+constexpr int kOctants = 8;
+constexpr int kOctantSideLog2 = kBlockSideLog2 - 1, kOctantSide = 1 << kOctantSideLog2;
+constexpr std::size_t kOctantVoxels = 1 << 3 * kOctantSideLog2;
 
-struct LayerQuestions {
-  std::array<float, kLayer> distance2;
-  std::array<int, kLayer> place, right, down;
+Eigen::Vector3i first_of_octant(const Eigen::Vector3i& block, int octant) {
+  return block * kBlockSide +
+         kOctantSide * Eigen::Vector3i(octant & 1, octant >> 1 & 1, octant >> 2);
+}
+
+struct OctantQuestions {
+  std::array<float, kOctantVoxels> distance2;
+  std::array<int, kOctantVoxels> place, right, down;
 };
 
-struct AskLayer {
+struct AskOctant {
   [[gnu::always_inline]] void operator()(const FreeSpaceView& view, const PyramidShape& shape,
-                                         const Eigen::Vector3i& first, LayerQuestions& out) const {
+                                         const Eigen::Vector3i& first, OctantQuestions& out) const {
     const FreeSpaceView v = view;
     const PyramidShape s = shape;
-    const int x = first.x(), y = first.y();
-    const float z = center_of(v, 2, first.z());
-    for (int i = 0; i < static_cast<int>(kLayer); ++i) {
-      const Question q = question_of(v, s, center_of(v, 0, x + (i & (kBlockSide - 1))),
-                                     center_of(v, 1, y + (i >> kBlockSideLog2)), z);
+    const int x = first.x(), y = first.y(), z = first.z();
+    constexpr int kLast = kOctantSide - 1;
+    for (int i = 0; i < static_cast<int>(kOctantVoxels); ++i) {
+      const Question q = question_of(v, s, center_of(v, 0, x + (i & kLast)),
+                                     center_of(v, 1, y + (i >> kOctantSideLog2 & kLast)),
+                                     center_of(v, 2, z + (i >> 2 * kOctantSideLog2)));
       out.distance2[static_cast<std::size_t>(i)] = q.distance2;
       out.place[static_cast<std::size_t>(i)] = q.place;
       out.right[static_cast<std::size_t>(i)] = q.right;
@@ -118,35 +127,32 @@ struct AskLayer {
   }
 };
 
-std::uint64_t crossed_in_layer(const LayerQuestions& questions, const float* cells) {
-  std::array<float, kLayer> reached;
-  for (std::size_t i = 0; i < kLayer; ++i)
+// Bit i: the voxel that is asked i-th.
+std::uint64_t crossed_of(const OctantQuestions& questions, const float* cells) {
+  std::array<float, kOctantVoxels> reached;
+  for (std::size_t i = 0; i < kOctantVoxels; ++i)
     reached[i] = answer(cells, questions.place[i], questions.right[i], questions.down[i]);
-  std::array<std::uint8_t, kLayer> is_crossed;
-  for (std::size_t i = 0; i < kLayer; ++i)
+  std::array<std::uint8_t, kOctantVoxels> is_crossed;
+  for (std::size_t i = 0; i < kOctantVoxels; ++i)
     is_crossed[i] = questions.distance2[i] <= reached[i] ? 1 : 0;
   return bits_of_bytes(is_crossed);
 }
 
-bool is_layer_within(const FreeSpaceView& view, int z) {
-  return view.first_layer <= z && z <= view.last_layer;
+// Voxels of an octant, in the order in which they are asked, to their places in the block.
+void set_octant(int octant, std::uint64_t voxels, VoxelMask& block) {
+  const Eigen::Vector3i first = first_of_octant(Eigen::Vector3i::Zero(), octant);
+  for (int z = 0; z < kOctantSide; ++z) {
+    // The four rows of four voxels, apart as the rows of the block are.
+    std::uint64_t rows = voxels >> z * kOctantSide * kOctantSide & 0xffff;
+    rows = (rows | rows << 8) & 0x00ff00ff;
+    rows = (rows | rows << 4) & 0x0f0f0f0f;
+    const int place = first.y() * kBlockSide + first.x();
+    block.words[static_cast<std::size_t>(first.z() + z)] |= rows << place;
+  }
 }
 
-VoxelMask crossed_in_block(const FreeSpaceView& view, const ReachPyramid& reach,
-                           const Eigen::Vector3i& block, bool is_all_crossed, VectorTarget target) {
-  VoxelMask crossed;
-  const PyramidShape shape = shape_of(reach);
-  for (int z = 0; z < kBlockSide; ++z) {
-    Eigen::Vector3i first = block * kBlockSide + Eigen::Vector3i(0, 0, z);
-    if (!is_layer_within(view, first.z())) continue;
-    std::uint64_t& word = crossed.words[static_cast<std::size_t>(z)];
-    word = ~std::uint64_t{0};
-    if (is_all_crossed) continue;
-    LayerQuestions questions;
-    run_on(target, AskLayer{}, view, shape, first, questions);
-    word = crossed_in_layer(questions, reach.cells());
-  }
-  return crossed;
+bool is_layer_within(const FreeSpaceView& view, int z) {
+  return view.first_layer <= z && z <= view.last_layer;
 }
 
 enum class Crossed { nothing, something, everything };
@@ -200,18 +206,93 @@ class SeenCube {
   float nearest2_, farthest2_;
 };
 
+// Whether the voxels of a cube are crossed, as far as the pyramid tells without asking each.
+class CubeTest {
+ public:
+  CubeTest(const FreeSpaceView& view, const ReachPyramid& reach) : view_(view), reach_(reach) {}
+
+  Crossed of(const Eigen::Vector3i& first, int side) const {
+    if (first.z() > view_.last_layer || first.z() + side <= view_.first_layer)
+      return Crossed::nothing;
+    const SeenCube seen(view_, first, side);
+    if (seen.is_behind()) return Crossed::nothing;
+    if (seen.reaches_behind()) return Crossed::something;
+    return of(seen);
+  }
+
+ private:
+  Crossed of(const SeenCube& seen) const {
+    const float margin = seen.largest_half_face(view_.focal_x) + 1.0F;
+    const auto across = seen.seen_across(0, view_.focal_x, view_.center_x);
+    const auto down = seen.seen_across(1, view_.focal_y, view_.center_y);
+    const auto last_u = static_cast<float>(reach_.width() - 1);
+    const auto last_v = static_cast<float>(reach_.height() - 1);
+    if (across.high < -margin || down.high < -margin || across.low > last_u + margin ||
+        down.low > last_v + margin)
+      return Crossed::nothing;
+
+    const auto sample = [](float place, float last) {
+      return static_cast<int>(clamped(place, 0.0F, last));
+    };
+    const bool is_inside =
+        across.low >= 0.0F && down.low >= 0.0F && across.high <= last_u && down.high <= last_v;
+    const auto near = reach_.range_of(
+        sample(across.low - margin, last_u), sample(down.low - margin, last_v),
+        sample(across.high + margin + 1.0F, last_u), sample(down.high + margin + 1.0F, last_v));
+    if (near.largest < 0.0F || seen.nearest2() > near.largest) return Crossed::nothing;
+    const bool is_all = is_inside && near.smallest > 0.0F && seen.farthest2() < near.smallest;
+    return is_all ? Crossed::everything : Crossed::something;
+  }
+
+  const FreeSpaceView& view_;
+  const ReachPyramid& reach_;
+};
+
+struct FoundBlock {
+  Eigen::Vector3i index;
+  Crossed crossed;
+};
+
+std::uint64_t crossed_in_octant(const FreeSpaceView& view, const ReachPyramid& reach,
+                                const Eigen::Vector3i& first, VectorTarget target) {
+  const Crossed crossed = CubeTest(view, reach).of(first, kOctantSide);
+  if (crossed != Crossed::something) return crossed == Crossed::nothing ? 0 : ~std::uint64_t{0};
+  OctantQuestions questions;
+  const PyramidShape shape = shape_of(reach);
+  run_on(target, AskOctant{}, view, shape, first, questions);
+  return crossed_of(questions, reach.cells());
+}
+
+VoxelMask crossed_by_octants(const FreeSpaceView& view, const ReachPyramid& reach,
+                             const Eigen::Vector3i& block, VectorTarget target) {
+  VoxelMask crossed;
+  for (int octant = 0; octant < kOctants; ++octant)
+    set_octant(octant, crossed_in_octant(view, reach, first_of_octant(block, octant), target),
+               crossed);
+  return crossed;
+}
+
+VoxelMask crossed_in_block(const FreeSpaceView& view, const ReachPyramid& reach,
+                           const FoundBlock& block, VectorTarget target) {
+  VoxelMask crossed;
+  crossed.words.fill(~std::uint64_t{0});
+  if (block.crossed == Crossed::something)
+    crossed = crossed_by_octants(view, reach, block.index, target);
+  for (int z = 0; z < kBlockSide; ++z)
+    if (!is_layer_within(view, block.index.z() * kBlockSide + z))
+      crossed.words[static_cast<std::size_t>(z)] = 0;
+  return crossed;
+}
+
 class BlockSearch {
  public:
-  BlockSearch(const FreeSpaceView& view, const ReachPyramid& reach) : view_(view), reach_(reach) {
+  BlockSearch(const FreeSpaceView& view, const ReachPyramid& reach)
+      : view_(view), reach_(reach), cube_(view, reach) {
     const auto all = reach.range_of(0, 0, reach.width() - 1, reach.height() - 1);
     if (all.largest > 0.0F) search_within(std::sqrt(all.largest));
   }
 
-  struct Found {
-    Eigen::Vector3i block;
-    bool is_all_crossed;
-  };
-  std::vector<Found> found;
+  std::vector<FoundBlock> found;
 
  private:
   static constexpr int kRootLog2 = 3;  // cubes of 8 x 8 x 8 blocks to begin with
@@ -247,51 +328,20 @@ class BlockSearch {
 
   // `cube` counts in cubes of 2^level blocks a side.
   void search(const Eigen::Vector3i& cube, int level, Crossed crossed) {
-    if (crossed == Crossed::something) crossed = how_crossed(cube, level);
+    const int side = kBlockSide << level;
+    if (crossed == Crossed::something) crossed = cube_.of(cube * side, side);
     if (crossed == Crossed::nothing) return;
     if (level == 0) {
-      found.push_back({cube, crossed == Crossed::everything});
+      found.push_back({cube, crossed});
       return;
     }
     for (int part = 0; part < 8; ++part)
       search(2 * cube + Eigen::Vector3i(part & 1, part >> 1 & 1, part >> 2), level - 1, crossed);
   }
 
-  Crossed how_crossed(const Eigen::Vector3i& cube, int level) const {
-    const int side = kBlockSide << level;
-    const int first_z = cube.z() * side;
-    if (first_z > view_.last_layer || first_z + side <= view_.first_layer) return Crossed::nothing;
-    const SeenCube seen(view_, cube * side, side);
-    if (seen.is_behind()) return Crossed::nothing;
-    if (seen.reaches_behind()) return Crossed::something;
-    return how_crossed(seen);
-  }
-
-  Crossed how_crossed(const SeenCube& seen) const {
-    const float margin = seen.largest_half_face(view_.focal_x) + 1.0F;
-    const auto across = seen.seen_across(0, view_.focal_x, view_.center_x);
-    const auto down = seen.seen_across(1, view_.focal_y, view_.center_y);
-    const auto last_u = static_cast<float>(reach_.width() - 1);
-    const auto last_v = static_cast<float>(reach_.height() - 1);
-    if (across.high < -margin || down.high < -margin || across.low > last_u + margin ||
-        down.low > last_v + margin)
-      return Crossed::nothing;
-
-    const auto sample = [](float place, float last) {
-      return static_cast<int>(clamped(place, 0.0F, last));
-    };
-    const bool is_inside =
-        across.low >= 0.0F && down.low >= 0.0F && across.high <= last_u && down.high <= last_v;
-    const auto near = reach_.range_of(
-        sample(across.low - margin, last_u), sample(down.low - margin, last_v),
-        sample(across.high + margin + 1.0F, last_u), sample(down.high + margin + 1.0F, last_v));
-    if (near.largest < 0.0F || seen.nearest2() > near.largest) return Crossed::nothing;
-    const bool is_all = is_inside && near.smallest > 0.0F && seen.farthest2() < near.smallest;
-    return is_all ? Crossed::everything : Crossed::something;
-  }
-
   const FreeSpaceView& view_;
   const ReachPyramid& reach_;
+  const CubeTest cube_;
 };
 
 }  // namespace
@@ -387,9 +437,9 @@ std::vector<CrossedBlock> crossed_blocks(const FreeSpaceView& view, const ReachP
   parallel_for(0, (count + kBlocksAtATime - 1) / kBlocksAtATime, threads, [&](int share) {
     const int end = std::min(count, (share + 1) * kBlocksAtATime);
     for (int i = share * kBlocksAtATime; i < end; ++i) {
-      const auto& [block, is_all] = search.found[static_cast<std::size_t>(i)];
-      crossed[static_cast<std::size_t>(i)] = {block,
-                                              crossed_in_block(view, reach, block, is_all, target)};
+      const FoundBlock& block = search.found[static_cast<std::size_t>(i)];
+      crossed[static_cast<std::size_t>(i)] = {block.index,
+                                              crossed_in_block(view, reach, block, target)};
     }
   });
   std::erase_if(crossed, [](const CrossedBlock& block) { return block.voxels.is_empty(); });
