@@ -34,6 +34,7 @@ inline Masses combine(const Masses& a, const Masses& b, ConflictRule rule) {
 
 struct DempsterShaferRule {
   static constexpr const char* kName = "dempster_shafer";
+  static constexpr bool kKeepsIgnorance = true;
 
   double hit_mass = 0.6;
   double free_mass = 0.3;

@@ -94,21 +94,16 @@ void change_layers(const BlockObservation& seen, std::uint32_t stamp_ms, BlockVo
                    Change change) {
   const std::uint16_t time = voxels.number_of_time(stamp_ms);
   LayerChange layer;
+  layer.observation.fill(0.0F);
   for (int z = 0; z < kBlockSide; ++z) {
     const std::uint64_t observed = seen.observed.words[static_cast<std::size_t>(z)];
     if (observed == 0) continue;
-    const std::size_t first = static_cast<std::size_t>(z) * layer.state.size();
-    for (std::size_t i = 0; i < layer.state.size(); ++i) {
-      const PackedVoxel& voxel = voxels.packed(first + i);
-      layer.observation[i] = seen.values.empty() ? 0.0F : seen.values[first + i];
-      layer.state[i] = voxel.state;
-      layer.observations[i] = voxel.observations;
-    }
+    if (!seen.values.empty())
+      std::copy_n(seen.values.begin() + z * std::ssize(layer.observation), layer.observation.size(),
+                  layer.observation.begin());
+    voxels.load_layer(z, layer.state, layer.observations);
     change(z, layer);
-    for (std::uint64_t rest = observed; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      voxels.observe(first + i, layer.state[i], stamp_ms, time);
-    }
+    voxels.observe_layer(z, observed, layer.state, stamp_ms, time);
   }
 }
 
@@ -159,7 +154,28 @@ void update_map(const Rule& rule, const FrameChange& change, const VoxelMap& map
   });
 }
 
+struct AddLayer {
+  template <AddingRule Rule>
+  [[gnu::always_inline]] void operator()(const Rule& rule, LayerChange& layer) const {
+    const Rule adding = rule;
+    for (std::size_t i = 0; i < layer.state.size(); ++i) {
+      const double state = layer.observations[i] > 0 ? layer.state[i] : kNoBelief.state;
+      layer.state[i] = static_cast<float>(adding.after({state}, layer.observation[i]).state);
+    }
+  }
+};
+
 template <AddingRule Rule>
+void update_map(const Rule& rule, const FrameChange& change, const VoxelMap&) {
+  const std::uint32_t stamp_ms = change.frame.stamp_ms;
+  for_each_block(change, [&](std::size_t, const BlockObservation& seen, VoxelBlock& block) {
+    change_layers(seen, stamp_ms, block.voxels,
+                  [&](int, LayerChange& layer) { on_best_target(AddLayer{}, rule, layer); });
+  });
+}
+
+template <AddingRule Rule>
+requires KeepsIgnorance<Rule>
 void update_map(const Rule& rule, const FrameChange& change, const VoxelMap&) {
   const std::uint32_t stamp_ms = change.frame.stamp_ms;
   for_each_block(change, [&](std::size_t, const BlockObservation& seen, VoxelBlock& block) {

@@ -25,8 +25,10 @@ struct LogOddsRule {
 
   VoxelBelief after(const VoxelBelief& before, float observation) const {
     const bool is_miss = observation <= 0.0F;
-    if (!is_miss && static_cast<double>(observation) < min_hit_evidence) return {before.state};
-    return {limits.clamp(bayes(before.state, is_miss ? miss_probability : hit_probability))};
+    const bool is_hit = static_cast<double>(observation) >= min_hit_evidence;
+    const double after =
+        limits.clamp(bayes(before.state, is_miss ? miss_probability : hit_probability));
+    return {is_miss || is_hit ? after : before.state};
   }
 };
 

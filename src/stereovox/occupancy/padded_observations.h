@@ -10,10 +10,6 @@
 
 namespace stereovox {
 
-// Values of the voxels of one layer z of a block, at x + 8 y.
-template <class Value>
-using PerVoxelOfLayer = std::array<Value, kBlockSide * kBlockSide>;
-
 class PaddedObservations {
  public:
   PaddedObservations(const FrameObservation& frame, const BlockObservation& center);

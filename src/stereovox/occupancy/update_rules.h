@@ -5,6 +5,7 @@
 //             (16); age_factor(seconds since the last observation) is not asked for the first one,
 //             which has 1.
 //   adding:   after(belief, observation) is the new belief; the first one starts from kNoBelief.
+//             With kKeepsIgnorance = true beliefs keep their ignorance, which else is 0.
 //
 // VisibilityRule adds too, but also asks how visible the voxel is (frame_visibility.h).
 //
@@ -37,6 +38,9 @@ template <class Rule>
 concept AddingRule = requires(const Rule& rule, const VoxelBelief& belief, float observation) {
   rule.after(belief, observation);
 };
+
+template <class Rule>
+concept KeepsIgnorance = AddingRule<Rule> && Rule::kKeepsIgnorance;
 
 // The profile that the rule observes a frame with; nullptr when it has none of its own.
 inline const SurfaceProfile* profile_of(const UpdateRule& update) {

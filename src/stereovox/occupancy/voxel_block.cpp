@@ -2,12 +2,54 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
+
+#include "stereovox/occupancy/vector_target.h"
 
 namespace stereovox {
 namespace {
 
 // At least one time of that many is unused when each voxel has one of its own.
 constexpr std::size_t kMaxTimes = 2 * kVoxelsPerBlock;
+
+// A voxel as one number, so that many change at once.
+using VoxelBits = std::uint64_t;
+static_assert(std::endian::native == std::endian::little);
+constexpr int kObservationsAt = 32, kTimeAt = 48;
+constexpr VoxelBits kMaxObservations = std::numeric_limits<std::uint16_t>::max();
+
+struct LoadLayer {
+  [[gnu::always_inline]] void operator()(const PackedVoxel* const& layer,
+                                         PerVoxelOfLayer<float>& states,
+                                         PerVoxelOfLayer<std::int32_t>& observations) const {
+    PerVoxelOfLayer<VoxelBits> voxels;
+    std::memcpy(voxels.data(), layer, sizeof voxels);
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      states[i] = std::bit_cast<float>(static_cast<std::uint32_t>(voxels[i]));
+      observations[i] = static_cast<std::int32_t>(voxels[i] >> kObservationsAt & kMaxObservations);
+    }
+  }
+};
+
+struct ObserveLayer {
+  [[gnu::always_inline]] void operator()(const std::uint64_t& observed,
+                                         const PerVoxelOfLayer<float>& states,
+                                         const std::uint16_t& time,
+                                         PackedVoxel* const& layer) const {
+    const VoxelBits which = observed, time_bits = VoxelBits{time} << kTimeAt;
+    PerVoxelOfLayer<VoxelBits> voxels;
+    std::memcpy(voxels.data(), layer, sizeof voxels);
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      const VoxelBits before = voxels[i];
+      const VoxelBits seen = before >> kObservationsAt & kMaxObservations;
+      const VoxelBits count = seen < kMaxObservations ? seen + 1 : seen;
+      const VoxelBits now =
+          time_bits | count << kObservationsAt | std::bit_cast<std::uint32_t>(states[i]);
+      voxels[i] = (which >> i & 1) != 0 ? now : before;
+    }
+    std::memcpy(static_cast<void*>(layer), voxels.data(), sizeof voxels);
+  }
+};
 
 }  // namespace
 
@@ -21,6 +63,26 @@ BlockVoxels& BlockVoxels::operator=(const BlockVoxels& other) {
 
 void BlockVoxels::set(std::size_t position, const Voxel& voxel) {
   set(position, voxel, number_of_time(voxel.last_seen_ms));
+}
+
+void BlockVoxels::load_layer(int z, PerVoxelOfLayer<float>& states,
+                             PerVoxelOfLayer<std::int32_t>& observations) const {
+  const PackedVoxel* const layer = &packed_[static_cast<std::size_t>(z) * states.size()];
+  on_best_target(LoadLayer{}, layer, states, observations);
+}
+
+void BlockVoxels::observe_layer(int z, std::uint64_t observed, const PerVoxelOfLayer<float>& states,
+                                std::uint32_t time_ms, std::uint16_t time) {
+  const std::size_t first = static_cast<std::size_t>(z) * states.size();
+  const bool is_latest = time_ms >= *std::ranges::max_element(times_ms_);
+  if (is_latest && ignorance_ == nullptr) {
+    PackedVoxel* const layer = &packed_[first];
+    return on_best_target(ObserveLayer{}, observed, states, time, layer);
+  }
+  for (std::uint64_t rest = observed; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    observe(first + i, states[i], time_ms, time);
+  }
 }
 
 std::uint16_t BlockVoxels::number_of_time(std::uint32_t time_ms) {

@@ -24,6 +24,10 @@ struct PackedVoxel {
   std::uint16_t time = 0;  // number of its time in the block
 };
 static_assert(sizeof(PackedVoxel) == 8);
+
+// Values of the voxels of one layer z of a block, at x + 8 y.
+template <class Value>
+using PerVoxelOfLayer = std::array<Value, kBlockSide * kBlockSide>;
 inline constexpr PackedVoxel kUnknownVoxel{};
 
 class BlockVoxels {
@@ -56,6 +60,13 @@ class BlockVoxels {
     voxel.state = state;
     if (ignorance_ != nullptr) (*ignorance_)[position] = 0;
   }
+
+  // The same for each voxel of layer z that has a bit in `observed`.
+  void observe_layer(int z, std::uint64_t observed, const PerVoxelOfLayer<float>& states,
+                     std::uint32_t time_ms, std::uint16_t time);
+
+  void load_layer(int z, PerVoxelOfLayer<float>& states,
+                  PerVoxelOfLayer<std::int32_t>& observations) const;
 
   // For loops over a block: the voxel without its ignorance, and the number of a time, which stays
   // good until the next one is asked for.

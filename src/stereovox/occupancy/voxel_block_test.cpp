@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 namespace stereovox {
@@ -49,6 +50,35 @@ TEST(BlockVoxels, ACopyIsIndependent) {
   copy.set(3, {0.25F, 20, 2, 4});
   EXPECT_EQ(voxels[3], (Voxel{0.5F, 10, 1, 9}));
   EXPECT_EQ(copy[3], (Voxel{0.25F, 20, 2, 4}));
+}
+
+// With and without later times and ignorance, which layers as a whole know nothing of.
+TEST(BlockVoxels, ALayerIsObservedAsEachOfItsVoxelsIs) {
+  std::mt19937 random(5);
+  for (const bool is_latest : {false, true})
+    for (const bool has_ignorance : {false, true}) {
+      BlockVoxels by_layer;
+      for (std::size_t i = 0; i < by_layer.size(); ++i) {
+        Voxel voxel = random_voxel(random, std::uint32_t(random() % 10));
+        if (!has_ignorance) voxel.ignorance = 0;
+        if (i % 5 == 0) voxel.observations = i % 2 == 0 ? 0 : 65535;
+        by_layer.set(i, voxel);
+      }
+      BlockVoxels one_by_one = by_layer;
+      const std::uint32_t time_ms = is_latest ? 10 : 5;
+      const std::uint16_t time = by_layer.number_of_time(time_ms);
+      ASSERT_EQ(one_by_one.number_of_time(time_ms), time);
+      for (int z = 0; z < kBlockSide; ++z) {
+        const std::uint64_t observed = std::uint64_t{random()} << 32 | random();
+        PerVoxelOfLayer<float> states;
+        for (float& state : states) state = float(random() % 1000) / 1000.0F;
+        by_layer.observe_layer(z, observed, states, time_ms, time);
+        for (std::size_t i = 0; i < states.size(); ++i)
+          if ((observed >> i & 1) != 0)
+            one_by_one.observe(std::size_t(z) * states.size() + i, states[i], time_ms, time);
+      }
+      EXPECT_TRUE(std::ranges::equal(by_layer, one_by_one)) << is_latest << has_ignorance;
+    }
 }
 
 TEST(BlockVoxels, KnowWhatIsKnown) {
