@@ -17,8 +17,8 @@ void crop(const VoxelBounds& box, VoxelMap& map);
 // its moved centre. Two voxels that know the same place become one: the states' mean (and that of
 // the ignorance), weighted by the numbers of observations, whose sum (saturating) counts, and the
 // later time. Times of `other` are moved to the epoch of `map`; when `map` has none it takes over
-// the other's. Throws Error, and leaves `map` as it is, when the voxel sizes differ or a voxel would
-// lie beyond the lattice.
+// the other's. Throws Error, and leaves `map` as it is, when the voxel sizes differ or a voxel
+// would lie beyond the lattice.
 void merge(const VoxelMap& other, const SE3& T_map_other, VoxelMap& map);
 
 // The map in voxels `factor` times as large (2, 4, 8, ...). A coarse voxel is as occupied as the
