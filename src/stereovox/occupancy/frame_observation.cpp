@@ -170,7 +170,7 @@ class EvidenceTable {
   template <class Mark>
   void add(const Mark& mark) {
     const auto position = static_cast<std::size_t>(mark.position());
-    is_touched_[position] = 1;
+    is_touched_[position / VoxelMask::kBits][position % VoxelMask::kBits] = 1;
     mark.add_to(table_[position]);
   }
 
@@ -191,20 +191,22 @@ class EvidenceTable {
       out.observed.set(i);
       if (value > min_hit) out.hit.set(i);
     });
-    is_touched_.fill(0);
+    is_touched_ = {};
     return out;
   }
 
  private:
   VoxelMask touched() const {
     VoxelMask mask;
-    for (int i = 0; i < kVoxelsPerBlock; ++i)
-      if (is_touched_[static_cast<std::size_t>(i)] != 0) mask.set(i);
+    for (std::size_t i = 0; i < mask.words.size(); ++i)
+      mask.words[i] = bits_of_bytes(is_touched_[i]);
     return mask;
   }
 
   std::vector<VoxelEvidence> table_ = std::vector<VoxelEvidence>(kVoxelsPerBlock);
-  std::array<std::uint8_t, kVoxelsPerBlock> is_touched_{};  // bytes: a bit needs its word first
+  // Bytes: a bit needs its word first.
+  std::array<std::array<std::uint8_t, VoxelMask::kBits>, kVoxelsPerBlock / VoxelMask::kBits>
+      is_touched_{};
 };
 
 template <class Mark>
