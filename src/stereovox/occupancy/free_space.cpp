@@ -222,6 +222,8 @@ class CubeTest {
 
  private:
   Crossed of(const SeenCube& seen) const {
+    // A window may reach half a cell farther, but the pyramid answers for whole cells, and here for
+    // larger ones.
     const float margin = seen.largest_half_face(view_.focal_x) + 1.0F;
     const auto across = seen.seen_across(0, view_.focal_x, view_.center_x);
     const auto down = seen.seen_across(1, view_.focal_y, view_.center_y);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <set>
 
 #include "stereovox/occupancy/scene_for_test.h"
@@ -109,6 +110,45 @@ TEST(FreeSpace, BlocksHoldExactlyTheVoxelsThatAreCrossedBeforeAWall) {
     const scene::Frame wall{scene::wall_at(3.0), scene::level_pose(yaw_rad, {0.3, -0.2, 0.7}), 0};
     const Seen seen(wall, params);
     EXPECT_TRUE(seen.by_blocks(1) == seen.by_voxels()) << yaw_rad;
+  }
+}
+
+// Rays that reach far are few here, so that they decide alone over voxels near the camera, whose
+// faces are large in the image.
+TEST(FreeSpace, BlocksHoldExactlyTheVoxelsThatLoneRaysCross) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> angle(-1.0F, 1.0F), near(0.0F, 4.0F), far(6.0F, 20.0F);
+  for (int round = 0; round < 40; ++round) {
+    const float share = round % 2 == 0 ? 0.001F : 1.0F;  // along the axes, nearly, or anyhow
+    const Eigen::Quaternionf turn(1.0F, share * angle(random), share * angle(random),
+                                  share * angle(random));
+    const Eigen::Matrix3f R = turn.normalized().toRotationMatrix();
+    FreeSpaceView view{
+        .center_offset = {0.5F * angle(random), 0.5F * angle(random), 0.5F * angle(random)},
+        .focal_x = 260.0F,
+        .focal_y = 260.0F,
+        .center_x = 160.0F,
+        .center_y = 120.0F,
+        .first_layer = -30,
+        .last_layer = 30};
+    for (int i = 0; i < 9; ++i) view.R_camera_world[static_cast<std::size_t>(i)] = R(i / 3, i % 3);
+    ReachPyramid reach(320, 240);
+    for (int v = 0; v < reach.height(); ++v)
+      for (int u = 0; u < reach.width(); ++u) {
+        const float reach_voxels = random() % 4000 == 0 ? far(random) : near(random);
+        reach.row(v)[u] = reach_voxels * reach_voxels;
+      }
+    reach.build();
+    VoxelSet expected, found;
+    for (int x = -24; x <= 24; ++x)
+      for (int y = -24; y <= 24; ++y)
+        for (int z = -24; z <= 24; ++z)
+          if (is_crossed(view, reach, {x, y, z})) expected.insert({x, y, z});
+    for (const CrossedBlock& block : crossed_blocks(view, reach, 1))
+      for_each_in(block.voxels, [&](int i) { found.insert(voxel_at(block.index, i)); });
+    EXPECT_GT(expected.size(), 30U);
+    EXPECT_TRUE(found == expected)
+        << "round " << round << ": " << found.size() << " of " << expected.size();
   }
 }
 
