@@ -111,6 +111,7 @@ struct OctantQuestions {
 struct AskOctant {
   [[gnu::always_inline]] void operator()(const FreeSpaceView& view, const PyramidShape& shape,
                                          const Eigen::Vector3i& first, OctantQuestions& out) const {
+    // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): else `out` might change it
     const FreeSpaceView v = view;
     const PyramidShape s = shape;
     const int x = first.x(), y = first.y(), z = first.z();
@@ -146,8 +147,8 @@ void set_octant(int octant, std::uint64_t voxels, VoxelMask& block) {
     std::uint64_t rows = voxels >> z * kOctantSide * kOctantSide & 0xffff;
     rows = (rows | rows << 8) & 0x00ff00ff;
     rows = (rows | rows << 4) & 0x0f0f0f0f;
-    const int place = first.y() * kBlockSide + first.x();
-    block.words[static_cast<std::size_t>(first.z() + z)] |= rows << place;
+    const int layer = first.z() + z, place = first.y() * kBlockSide + first.x();
+    block.words[static_cast<std::size_t>(layer)] |= rows << place;
   }
 }
 
@@ -351,7 +352,9 @@ class BlockSearch {
 ReachPyramid::ReachPyramid(int width, int height) : width_(width), height_(height) {
   constexpr int kLargest = 1 << (kLevels - 1);
   rows_ = (height + kLargest - 1) / kLargest * kLargest;
-  const auto cells = [&](int stride) { return static_cast<std::size_t>(rows_ * stride); };
+  const auto cells = [&](int stride) {
+    return static_cast<std::size_t>(rows_) * static_cast<std::size_t>(stride);
+  };
   largest_ = std::make_unique_for_overwrite<float[]>(cells(stride_of(width)));
   smallest_ = std::make_unique_for_overwrite<float[]>(cells((width + 1) / 2));
 }

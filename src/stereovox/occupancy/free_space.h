@@ -67,7 +67,8 @@ class ReachPyramid {
   // The smallest have no samples to the left.
   std::size_t place_of_smallest(int level, int u, int v) const {
     const int stride = (width_ + 1) / 2;
-    return static_cast<std::size_t>((rows_ - (2 * rows_ >> level) + v) * stride + u);
+    const int place = (rows_ - (2 * rows_ >> level) + v) * stride + u;
+    return static_cast<std::size_t>(place);
   }
 
   int width_, height_, rows_;  // rows: of the array, a multiple of the largest cell

@@ -65,6 +65,7 @@ class BlockVoxels {
   void observe_layer(int z, std::uint64_t observed, const PerVoxelOfLayer<float>& states,
                      std::uint32_t time_ms, std::uint16_t time);
 
+  // States and counts of the voxels of layer z; both are 0 where nothing is known.
   void load_layer(int z, PerVoxelOfLayer<float>& states,
                   PerVoxelOfLayer<std::int32_t>& observations) const;
 
