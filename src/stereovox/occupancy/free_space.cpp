@@ -141,6 +141,7 @@ std::uint64_t crossed_of(const OctantQuestions& questions, const float* cells) {
 
 // Voxels of an octant, in the order in which they are asked, to their places in the block.
 void set_octant(int octant, std::uint64_t voxels, VoxelMask& block) {
+  static_assert(kOctantSide == 4 && kBlockSide == 8);
   const Eigen::Vector3i first = first_of_octant(Eigen::Vector3i::Zero(), octant);
   for (int z = 0; z < kOctantSide; ++z) {
     // The four rows of four voxels, apart as the rows of the block are.

@@ -24,11 +24,11 @@ struct PackedVoxel {
   std::uint16_t time = 0;  // number of its time in the block
 };
 static_assert(sizeof(PackedVoxel) == 8);
+inline constexpr PackedVoxel kUnknownVoxel{};
 
 // Values of the voxels of one layer z of a block, at x + 8 y.
 template <class Value>
 using PerVoxelOfLayer = std::array<Value, kBlockSide * kBlockSide>;
-inline constexpr PackedVoxel kUnknownVoxel{};
 
 class BlockVoxels {
  public:
@@ -65,7 +65,7 @@ class BlockVoxels {
   void observe_layer(int z, std::uint64_t observed, const PerVoxelOfLayer<float>& states,
                      std::uint32_t time_ms, std::uint16_t time);
 
-  // States and counts of the voxels of layer z; both are 0 where nothing is known.
+  // States and counts of the voxels of layer z; a state means nothing where the count is 0.
   void load_layer(int z, PerVoxelOfLayer<float>& states,
                   PerVoxelOfLayer<std::int32_t>& observations) const;
 
