@@ -71,7 +71,6 @@ struct BytesAvx2 {
     return found;
   }
 
-  static constexpr bool kShiftsFast = false;
   static constexpr bool kCountsOnesInOneStep = false;
   static V count_ones(V v) {
     const V ones_of_nibble = _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4,  //

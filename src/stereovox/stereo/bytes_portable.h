@@ -64,7 +64,6 @@ struct BytesPortable {
     return v;
   }
 
-  static constexpr bool kShiftsFast = false;
   static constexpr bool kCountsOnesInOneStep = false;
   static V count_ones(V v) {
     v = v - ((v >> 1) & 0x55);

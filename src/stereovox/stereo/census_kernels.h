@@ -99,7 +99,7 @@ struct CensusKernels {
 const CensusKernels& portable_census_kernels();
 const CensusKernels* avx2_census_kernels();  // nullptr on a machine without AVX2
 const CensusKernels*
-avx512_census_kernels();  // nullptr on a machine without AVX-512 BW, VBMI and BITALG
+avx512_census_kernels();  // nullptr on a machine without AVX-512 BW, VL, VBMI and BITALG
 const CensusKernels& fastest_census_kernels();
 
 }  // namespace stereovox

@@ -123,6 +123,14 @@ template <class S>
   return S::mean(both, S::mean(both, S::spread(0)));
 }
 
+// The smallest of all bytes, in every byte.
+template <class S, int N>
+[[gnu::always_inline]] inline typename S::V smallest_of(const typename S::V (&bytes)[N]) {
+  typename S::V all = bytes[0];
+  for (int n = 1; n < N; ++n) all = S::min(all, bytes[n]);
+  return S::min_of_all(all);
+}
+
 // The costs of all candidates of one pixel on a path, and their smallest.
 template <class S, int N>
 struct PathState {
@@ -146,7 +154,7 @@ template <class S, int N>
   using V = typename S::V;
   const V wall = S::spread(kMaxByte);
   const V jump = S::add_saturated(path.smallest, large);
-  V before = wall, all = wall;
+  V before = wall;
   for (int n = 0; n < N; ++n) {
     const V here = path.cost[n];
     const V lower = S::from_before(before, here);
@@ -155,9 +163,8 @@ template <class S, int N>
     const V best = S::min(S::min(here, jump), beside);
     path.cost[n] = S::add(cost[n], S::subtract(best, path.smallest));
     before = here;
-    all = S::min(all, path.cost[n]);
   }
-  path.smallest = S::min_of_all(all);
+  path.smallest = smallest_of<S>(path.cost);
 }
 
 // The next pixel of a path from above, in place: `kept` holds the candidates of the pixel that it
@@ -170,21 +177,16 @@ template <class S, int N>
   using V = typename S::V;
   V next[N];
   const V wall = S::spread(kMaxByte);
-  V all = wall, before = wall;
   for (int n = 0; n < N; ++n) {
     std::uint8_t* const at = kept + n * S::kSize;
     const V here = S::load(at);
-    const bool load_lower = n > 0 && !S::kShiftsFast, load_upper = n + 1 < N && !S::kShiftsFast;
-    const V lower = load_lower ? S::load(at - 1) : S::from_before(before, here);
-    const V upper = load_upper ? S::load(at + 1)
-                               : S::from_after(here, n + 1 < N ? S::load(at + S::kSize) : wall);
-    before = here;
+    const V lower = n > 0 ? S::load(at - 1) : S::from_before(wall, here);
+    const V upper = n + 1 < N ? S::load(at + 1) : S::from_after(here, wall);
     const V beside = S::min(S::add_saturated(lower, small), S::add_saturated(upper, nearer));
     next[n] = S::add(cost[n], S::min(S::min(here, large), beside));
-    all = S::min(all, next[n]);
     sum[n] = S::add_saturated(sum[n], next[n]);
   }
-  const V smallest = S::min_of_all(all);
+  const V smallest = smallest_of<S>(next);
   for (int n = 0; n < N; ++n) S::store(kept + n * S::kSize, S::subtract(next[n], smallest));
 }
 
@@ -227,11 +229,11 @@ class KeptPath {
 
 // After the costs themselves, since each waits for other things: side by side they would fill the
 // window in which a machine looks for work.
-template <class S, int kCandidates>
+template <class S, class Wide, int kCandidates>
 void sweep_down(const SweepRow& row) {
   constexpr int N = kCandidates / S::kSize;
   using V = typename S::V;
-  cost_row<S, kCandidates>({row.width_px, row.left, row.right, row.cost});
+  cost_row<Wide, kCandidates>({row.width_px, row.left, row.right, row.cost});
   const V small = S::spread(row.small_penalty), nearer = S::spread(row.nearer_penalty);
   const auto kept = [&](int k) {
     return KeptPath<kCandidates>(row.paths_above[k], row.width_px, row.first_slot[k]);
@@ -269,17 +271,14 @@ template <class S, int N>
 [[gnu::always_inline]] inline void find_winner(const typename S::V (&sum)[N], int x,
                                                const WinnerPointers& out) {
   using V = typename S::V;
-  V all = sum[0];
-  for (int n = 1; n < N; ++n) all = S::min(all, sum[n]);
-  const V smallest = S::min_of_all(all);
+  const V smallest = smallest_of<S>(sum);
   const int best = first_equal<S, N>(sum, smallest);
-  V others = S::spread(kMaxByte);
+  V others[N];
   for (int n = 0; n < N; ++n)
-    others = S::min(
-        others, S::either(sum[n], S::load(kThreeOut.bytes + kMaxCandidates - best + n * S::kSize)));
+    others[n] = S::either(sum[n], S::load(kThreeOut.bytes + kMaxCandidates - best + n * S::kSize));
   out.candidate[x] = static_cast<std::uint8_t>(best);
   out.cost[x] = S::first(smallest);
-  out.second[x] = S::first(S::min_of_all(others));
+  out.second[x] = S::first(smallest_of<S>(others));
 }
 
 // One of the two paths along the row. It comes to each pixel from the one at x - direction.
@@ -339,17 +338,18 @@ void sweep_along(const RowPair& rows, const WinnerPair& out) {
   for (int i = 0; i < 2; ++i) find_winners<S, kCandidates>(rows[i], out[i]);
 }
 
-// Even is for numbers of candidates that are even multiples of kCandidateStep, Odd for the others.
-template <class Odd, class Even = Odd>
+// Wide may be a longer vector than S for costs, if an even multiple of kCandidateStep fills it.
+// Paths seek the smallest of all bytes again and again, which takes long vectors longer.
+template <class S, class Wide = S>
 constexpr CensusKernels make_census_kernels() {
-  return {.census = census_row<Even>,
-          .penalties = penalty_rows<Even>,
-          .down = {sweep_down<Odd, 32>, sweep_down<Even, 64>, sweep_down<Odd, 96>,
-                   sweep_down<Even, 128>, sweep_down<Odd, 160>, sweep_down<Even, 192>,
-                   sweep_down<Odd, 224>, sweep_down<Even, 256>},
-          .along = {sweep_along<Odd, 32>, sweep_along<Even, 64>, sweep_along<Odd, 96>,
-                    sweep_along<Even, 128>, sweep_along<Odd, 160>, sweep_along<Even, 192>,
-                    sweep_along<Odd, 224>, sweep_along<Even, 256>}};
+  return {.census = census_row<Wide>,
+          .penalties = penalty_rows<Wide>,
+          .down = {sweep_down<S, S, 32>, sweep_down<S, Wide, 64>, sweep_down<S, S, 96>,
+                   sweep_down<S, Wide, 128>, sweep_down<S, S, 160>, sweep_down<S, Wide, 192>,
+                   sweep_down<S, S, 224>, sweep_down<S, Wide, 256>},
+          .along = {sweep_along<S, 32>, sweep_along<S, 64>, sweep_along<S, 96>, sweep_along<S, 128>,
+                    sweep_along<S, 160>, sweep_along<S, 192>, sweep_along<S, 224>,
+                    sweep_along<S, 256>}};
 }
 
 }  // namespace

@@ -13,11 +13,17 @@
 namespace stereovox {
 namespace {
 
-// A right pixel that nobody matches, as if by the largest cost and disparity of all.
+// While the owner of a right pixel is sought, it is its cost, and below that its disparity, counted
+// from the smallest. A right pixel that nobody matches has the largest of both.
 constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
 std::uint32_t owner_with(int cost, int disparity) {
   return static_cast<std::uint32_t>(cost << kDisparityBits | (disparity - kSmallestDisparity));
+}
+
+// See OwnedRow.
+std::uint32_t pair_of_disparities(std::uint32_t owner, std::uint32_t beside) {
+  return beside << kDisparityBits | static_cast<std::uint16_t>(owner);
 }
 
 // kLogRatioSteps ln(1 + cost).
@@ -129,7 +135,7 @@ void FeatureRows::fill(const WinnerRow& winners, int v, MatchFeatures& features)
   find_owners(winners, features.disparity[v]);
   fastest_row_kernels().left_right({.candidate = winners.candidate.data(),
                                     .disparity = features.disparity[v],
-                                    .owner = first_owner(),
+                                    .owners = first_owner(),
                                     .max_disparity_px = max_disparity_px_,
                                     .max_difference = kMaxLeftRight},
                                    width_px_, features.left_right[v]);
@@ -148,6 +154,8 @@ void FeatureRows::find_owners(const WinnerRow& winners, const std::int16_t* disp
   }
   std::fill_n(owner_.begin(), before_, kNobody);
   std::fill_n(owner_.rbegin(), after_, kNobody);
+  for (std::size_t i = 0; i + 1 < owner_.size(); ++i)
+    owner_[i] = pair_of_disparities(owner_[i], owner_[i + 1]);
 }
 
 DisparityImage judge_matches(const RectifiedPair& pair, const MatchFeatures& features,

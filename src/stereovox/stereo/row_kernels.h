@@ -56,13 +56,13 @@ struct ChosenRow {
   std::uint8_t *candidate = nullptr, *before = nullptr, *here = nullptr, *after = nullptr;
 };
 
-// What a row of matches is compared with: who matches each right pixel best, as its cost, and below
-// that its disparity, counted from the smallest that 16 bits hold.
+// What a row of matches is compared with: who matches each right pixel and the one beside it best,
+// as their disparities, counted from the smallest that 16 bits hold, the first in the lower bits.
 inline constexpr int kDisparityBits = 16, kSmallestDisparity = -(1 << (kDisparityBits - 1));
 struct OwnedRow {
   const std::uint8_t* candidate = nullptr;
   const std::int16_t* disparity = nullptr;
-  const std::uint32_t* owner = nullptr;          // of the right pixel of candidate 0 of pixel 0
+  const std::uint32_t* owners = nullptr;         // of the right pixel of candidate 0 of pixel 0
   int max_disparity_px = 0, max_difference = 0;  // the difference in steps
 };
 

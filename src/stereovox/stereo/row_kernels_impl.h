@@ -64,11 +64,10 @@ void fill_left_right(const OwnedRow& row, int width_px, std::uint8_t* __restrict
     return larger(here - there, there - here);
   };
   for (int u = 0; u < width_px; ++u) {
-    const int here = r.disparity[u], there = u + r.candidate[u];
-    const int whole = (r.max_disparity_px - r.candidate[u]) * kStepsPerPixel;
-    const int beside = there + 1 - 2 * static_cast<int>(here > whole);
-    const int smallest =
-        smaller(difference(here, r.owner[there]), difference(here, r.owner[beside]));
+    const int here = r.disparity[u], candidate = r.candidate[u];
+    const int whole = (r.max_disparity_px - candidate) * kStepsPerPixel;
+    const std::uint32_t pair = r.owners[u + candidate - static_cast<int>(here > whole)];
+    const int smallest = smaller(difference(here, pair), difference(here, pair >> kDisparityBits));
     out[u] = static_cast<std::uint8_t>(smaller(smallest, r.max_difference));
   }
 }

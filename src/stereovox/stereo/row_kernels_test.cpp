@@ -41,7 +41,7 @@ std::vector<double> results(const RowKernels& kernels, int width) {
   std::vector<std::uint8_t> left_right(width);
   kernels.left_right({.candidate = bytes[0].data(),
                       .disparity = disparity.data(),
-                      .owner = owner.data() + 1,
+                      .owners = owner.data() + 1,
                       .max_disparity_px = 300,
                       .max_difference = 128},
                      width, left_right.data());

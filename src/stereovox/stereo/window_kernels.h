@@ -96,7 +96,7 @@ struct WindowKernels {
 
 const WindowKernels& portable_window_kernels();
 const WindowKernels* avx2_window_kernels();    // nullptr on a machine without AVX2
-const WindowKernels* avx512_window_kernels();  // or without AVX-512 BW, VBMI and BITALG
+const WindowKernels* avx512_window_kernels();  // or without AVX-512 BW, VL, VBMI and BITALG
 const WindowKernels& fastest_window_kernels();
 
 }  // namespace stereovox

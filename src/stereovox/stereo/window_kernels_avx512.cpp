@@ -3,7 +3,6 @@
 #include "stereovox/stereo/window_kernels.h"
 
 #ifdef __AVX512BITALG__
-#include "stereovox/stereo/bytes_avx2.h"
 #include "stereovox/stereo/bytes_avx512.h"
 #include "stereovox/stereo/window_kernels_impl.h"
 #endif
@@ -14,7 +13,7 @@ const WindowKernels* avx512_window_kernels() {
 #ifdef __AVX512BITALG__
   static constexpr WindowKernels kernels = make_window_kernels<BytesAvx2, BytesAvx512>();
   return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vbmi") &&
-                 __builtin_cpu_supports("avx512bitalg") && __builtin_cpu_supports("avx2")
+                 __builtin_cpu_supports("avx512bitalg") && __builtin_cpu_supports("avx512vl")
              ? &kernels
              : nullptr;
 #else

@@ -29,33 +29,37 @@ class LocalCosts {
   LocalCosts(const std::uint8_t* cost, int width_px, int candidates)
       : cost_(cost), width_px_(width_px), candidates_(candidates) {}
 
-  // Of those from candidate - kChoiceReach on. The first 2 kChoiceReach + 1 count.
-  Bytes about(int x, int candidate) const {
-    const bool is_inside =
-        keeps_off(x, kHalf, width_px_) && keeps_off(candidate, kChoiceReach, candidates_);
-    return is_inside ? inside(x, candidate) : anywhere(x, candidate);
+  // For each pixel from first_x to end_x those of its candidates from candidate[x] - kChoiceReach
+  // on. The first 2 kChoiceReach + 1 count.
+  void fill(const std::uint8_t* candidate, int first_x, int end_x, Bytes* out) const {
+    const int first_inside = std::clamp(kHalf, first_x, end_x);
+    const int end_inside = std::clamp(width_px_ - kHalf, first_inside, end_x);
+    for (int x = first_x; x < first_inside; ++x) *out++ = anywhere(x, candidate[x]);
+    const std::uint8_t* cost = cost_of(std::max(first_inside - kHalf, 0));
+    for (int x = first_inside; x < end_inside; ++x, cost += candidates_)
+      *out++ = has_neighbours(candidate[x]) ? inside(cost + candidate[x] - kChoiceReach)
+                                            : anywhere(x, candidate[x]);
+    for (int x = end_inside; x < end_x; ++x) *out++ = anywhere(x, candidate[x]);
   }
 
  private:
   static constexpr int kHalf = kLocalWidth_px / 2;
 
-  // Whether all places up to `reach` from this one are among the first `count`.
-  static bool keeps_off(int place, int reach, int count) {
-    return place >= reach && place + reach < count;
+  bool has_neighbours(int candidate) const {
+    return candidate >= kChoiceReach && candidate + kChoiceReach < candidates_;
   }
 
-  const std::uint8_t* cost_of(int x) const {
-    return cost_ + static_cast<std::ptrdiff_t>(x) * candidates_;
-  }
+  const std::uint8_t* cost_of(int x) const { return cost_ + x * candidates_; }
 
-  Bytes inside(int x, int candidate) const {
-    const std::uint8_t* cost = cost_of(x - kHalf) + candidate - kChoiceReach;
+  // `cost` is that of the first candidate and pixel which count.
+  Bytes inside(const std::uint8_t* cost) const {
     Bytes sums = 0;
-    for (int k = 0; k < kLocalWidth_px; ++k, cost += candidates_) sums += load(cost);
+    for (int k = 0; k < kLocalWidth_px; ++k) sums += load(cost + k * candidates_);
     return sums;
   }
 
-  Bytes anywhere(int x, int candidate) const {
+  // Needed seldom, so that the loop above keeps its registers.
+  [[gnu::noinline]] Bytes anywhere(int x, int candidate) const {
     Bytes sums = 0;
     for (int i = 0; i <= 2 * kChoiceReach; ++i)
       sums |= sum_at(x, candidate + i - kChoiceReach) << i * kByte;
@@ -71,7 +75,8 @@ class LocalCosts {
   }
 
   const std::uint8_t* const cost_;
-  const int width_px_, candidates_;
+  const int width_px_;
+  const std::ptrdiff_t candidates_;
 };
 
 }  // namespace
@@ -92,12 +97,13 @@ void choose_locally(const std::uint8_t* cost, int candidates, WinnerRow& row) {
   const LocalCosts costs(cost, width, candidates);
   for (int begin = 0; begin < width; begin += kChunk) {
     const int count = std::min(kChunk, width - begin);
+    std::array<Bytes, kChunk> five;
     std::array<std::uint32_t, kChunk> first_four;
     std::array<std::uint8_t, kChunk> fifth;
+    costs.fill(row.candidate.data(), begin, begin + count, five.data());
     for (int i = 0; i < count; ++i) {
-      const Bytes five = costs.about(begin + i, row.candidate[begin + i]);
-      first_four[i] = static_cast<std::uint32_t>(five);
-      fifth[i] = static_cast<std::uint8_t>(five >> sizeof(std::uint32_t) * kByte);
+      first_four[i] = static_cast<std::uint32_t>(five[i]);
+      fifth[i] = static_cast<std::uint8_t>(five[i] >> sizeof(std::uint32_t) * kByte);
     }
     fastest_row_kernels().choose({first_four.data(), fifth.data()}, count,
                                  {.candidate = row.candidate.data() + begin,
