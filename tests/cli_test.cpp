@@ -160,6 +160,71 @@ TEST(BadOutput, ResultsAreReplacedOnlyOnRequest) {
   EXPECT_EQ(run_program(command + " --overwrite").exit_code, 0);
 }
 
+TEST(BadOutput, FoldersOfTheDataSetAreRefused) {
+  const fs::path data = office_extract("data", 3);
+  for (const fs::path& out : {data, data / "left"}) {
+    const ProgramResult result = run_program("run " + quoted(data) + " -q -o " + quoted(out));
+    EXPECT_EQ(result.exit_code, 2) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("is a folder of the data set"));
+    EXPECT_FALSE(fs::exists(out / "map.svx"));
+  }
+  EXPECT_EQ(run_program("run " + quoted(data) + " -q -o " + quoted(data / "out")).exit_code, 0);
+}
+
+TEST(BadOutput, NoCommandReplacesWhatItReads) {
+  const fs::path data = office_extract("data", 3), out = empty_folder("out");
+  ASSERT_EQ(run_program("run " + quoted(data) + " -q -o " + quoted(out)).exit_code, 0);
+  const std::string map = quoted(out / "map.svx"), nav = quoted(out / "nav.yaml"),
+                    image = quoted(out / "nav.pgm"), left = quoted(data / "left" / "000000.png"),
+                    right = quoted(data / "right" / "000000.png");
+  const std::string before =
+      text_of(out / "map.svx") + text_of(out / "nav.pgm") + text_of(data / "left" / "000000.png");
+  for (const std::string& command :
+       {"navmap " + map + " -o " + map, "info " + map + " --picture " + map,
+        "info " + nav + " --picture " + image, "score map " + nav + " " + nav + " --json " + nav,
+        "disparity " + left + " " + right + " -o " + left}) {
+    const ProgramResult result = run_program(command);
+    EXPECT_EQ(result.exit_code, 2) << command << result.output;
+  }
+  EXPECT_EQ(before, text_of(out / "map.svx") + text_of(out / "nav.pgm") +
+                        text_of(data / "left" / "000000.png"));
+}
+
+TEST(BadOutput, AReaderThatGoesAwayCostsNoResults) {
+  const fs::path data = office_extract("data", 5), out = empty_folder("out");
+  run_program("run " + quoted(data) + " -v -o " + quoted(out) + " | head -n 1");
+  EXPECT_TRUE(fs::exists(out / "map.svx"));
+}
+
+TEST(Calibration, CamerasThatDifferAndHaveNoDistortionAreRectified) {
+  const fs::path data = office_extract("data", 3);
+  std::ofstream(data / "calib.yaml", std::ios::app) << "doffs: 4\n";
+  const ProgramResult result =
+      run_program("run " + quoted(data) + " -q -o " + quoted(empty_folder("out")));
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
+
+TEST(Navmap, ANameWithoutEndingGetsOneAndAnotherEndingIsRefused) {
+  const fs::path data = office_extract("data", 3), out = empty_folder("out");
+  ASSERT_EQ(run_program("run " + quoted(data) + " -q -o " + quoted(out)).exit_code, 0);
+  const std::string command = "navmap " + quoted(out / "map.svx") + " -o ";
+  EXPECT_EQ(run_program(command + quoted(out / "site")).exit_code, 0);
+  EXPECT_EQ(text_of(out / "site.pgm"), text_of(out / "nav.pgm"));
+  const ProgramResult picture = run_program(command + quoted(out / "site.png"));
+  EXPECT_EQ(picture.exit_code, 2);
+  EXPECT_THAT(picture.output, HasSubstr("ends in .yaml"));
+}
+
+TEST(Navmap, HeightsOfWhichNothingIsKnownAreUnknownAndSaid) {
+  const fs::path data = office_extract("data", 3), out = empty_folder("out");
+  ASSERT_EQ(run_program("run " + quoted(data) + " -q -o " + quoted(out)).exit_code, 0);
+  const ProgramResult result = run_program("navmap " + quoted(out / "map.svx") + " -o " +
+                                           quoted(out / "high.yaml") + " --min-z 5 --max-z 6");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr(": 0 occupied, 0 free,"));
+  EXPECT_THAT(result.output, HasSubstr("nothing was seen often enough from 5 to 6 m"));
+}
+
 TEST(BadInput, AFileThatIsNoMapAndNoCalibrationIsRefused) {
   const fs::path file = empty_folder("data") / "words.yaml";
   std::ofstream(file) << "just words\n";

@@ -83,8 +83,8 @@ ExitCode check_source(const fs::path& path, const std::optional<fs::path>& calib
   std::cout << fmt::format(
       "{} sampled pairs: vertical offset {:.2f} px (median of {} corners), {:.0f} % of the pixels "
       "have a disparity, mean brightness {:.0f} of 255\n",
-      samples.pairs, rectification.median_vertical_px, rectification.corners,
-      samples.density_percent, samples.brightness);
+      samples.pairs, rectification.vertical_px, rectification.corners, samples.density_percent,
+      samples.brightness);
   for (const SkippedPair& pair : sparse_sequence->skipped()) warn(pair.name + ": " + pair.reason);
   const std::string warning = judge(rectification, RectificationParams{}, path.string());
   if (!warning.empty()) warn(warning);
@@ -100,7 +100,7 @@ ExitCode check_voxel_map(const fs::path& path) {
 
 // Writes what is intact of a damaged map to a new file.
 ExitCode salvage(const fs::path& path, const fs::path& output) {
-  require_folder_of(output);
+  require_output(output);
   const SalvagedMap salvaged = salvage_voxel_map(path);
   for (const std::string& loss : salvaged.losses) warn(path.string() + ": " + loss);
   write_voxel_map(output, salvaged.map);

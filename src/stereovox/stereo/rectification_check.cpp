@@ -96,7 +96,7 @@ RectificationCheck summarize(const std::vector<CornerOffsets>& offsets) {
   std::vector<double> vertical_px;
   int clear = 0, negative = 0;
   for (const CornerOffsets& frame : offsets) {
-    vertical_px.insert(vertical_px.end(), frame.vertical_px.begin(), frame.vertical_px.end());
+    for (const double offset_px : frame.vertical_px) vertical_px.push_back(std::abs(offset_px));
     for (const double d : frame.disparity_px) {
       clear += std::abs(d) > kClearDisparity_px ? 1 : 0;
       negative += d < -kClearDisparity_px ? 1 : 0;
@@ -104,7 +104,7 @@ RectificationCheck summarize(const std::vector<CornerOffsets>& offsets) {
   }
   RectificationCheck check;
   check.corners = static_cast<int>(vertical_px.size());
-  if (check.corners > 0) check.median_vertical_px = median(std::move(vertical_px));
+  if (check.corners > 0) check.vertical_px = median(std::move(vertical_px));
   if (clear > 0) check.negative_share = static_cast<double>(negative) / clear;
   return check;
 }
@@ -119,7 +119,7 @@ std::string judge(const RectificationCheck& check, const RectificationParams& pa
   if (!check.is_conclusive())
     return fmt::format("rectification could not be checked: only {} corners were matched",
                        check.corners);
-  const double offset_px = std::abs(check.median_vertical_px);
+  const double offset_px = check.vertical_px;
   if (offset_px >= params.refuse_offset_px)
     throw Error(
         fmt::format("{}: images are not rectified: matched corners differ by {:.2f} px vertically "

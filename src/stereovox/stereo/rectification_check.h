@@ -20,7 +20,7 @@ CornerOffsets measure_corner_offsets(const RectifiedPair& pair);
 
 struct RectificationCheck {
   int corners = 0;
-  double median_vertical_px = 0.0;
+  double vertical_px = 0.0;     // median of the sizes: a rolled camera has as many of either sign
   double negative_share = 0.0;  // of the corners whose disparity is clearly not zero
 
   // Fewer matched corners prove nothing.

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "stereovox/core/error.h"
@@ -33,7 +35,7 @@ TEST(RectificationCheck, MeasuresTheVerticalOffsetToATenthOfAPixel) {
   for (const double offset_px : {0.0, 0.4, -1.0, 3.0}) {
     const RectificationCheck result = check(pair_with_vertical_offset(offset_px));
     EXPECT_GT(result.corners, 50);
-    EXPECT_NEAR(result.median_vertical_px, offset_px, 0.1);
+    EXPECT_NEAR(result.vertical_px, std::abs(offset_px), 0.1);
     EXPECT_FALSE(result.looks_swapped());
   }
 }
@@ -45,6 +47,13 @@ TEST(RectificationCheck, AcceptsWarnsAndRefusesByTheOffset) {
               testing::StartsWith("rectification is poor: matched corners differ by 0.8"));
   EXPECT_THAT(refusal_of(check(pair_with_vertical_offset(3.0))),
               testing::StartsWith("data: images are not rectified: matched corners differ by 3.0"));
+}
+
+TEST(RectificationCheck, RefusesARolledCamera) {
+  RectifiedPair pair = pair_with_vertical_offset(0.0);
+  const cv::Mat roll = cv::getRotationMatrix2D({160.0F, 120.0F}, 2.0, 1.0);
+  cv::warpAffine(pair.right.pixels.clone(), pair.right.pixels, roll, pair.right.pixels.size());
+  EXPECT_THAT(refusal_of(check(pair)), testing::HasSubstr("images are not rectified"));
 }
 
 TEST(RectificationCheck, RecognisesSwappedImages) {

@@ -11,6 +11,8 @@ cv::Mat1d camera_matrix(const PinholeCamera& c) {
 }
 
 cv::Mat1d coefficients(const CameraCalibration& camera) {
+  constexpr int kFewest = 4;  // that OpenCV takes
+  if (camera.distortion.empty()) return cv::Mat1d::zeros(1, kFewest);
   return cv::Mat1d(camera.distortion, true).reshape(1, 1);
 }
 
