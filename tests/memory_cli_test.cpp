@@ -95,6 +95,20 @@ TEST(Merge, AMapWithItselfKnowsTheSamePlaces) {
   EXPECT_THAT(lost.output, HasSubstr("beyond the map's limit"));
 }
 
+TEST(Merge, TheNavigationMapOfTheWholeIsThatOfItsParts) {
+  const fs::path data = office_extract("data", 3), out = empty_folder("out");
+  ASSERT_EQ(run_program("run " + quoted(data) + " -q -o " + quoted(out)).exit_code, 0);
+  const std::string map = quoted(out / "map.svx");
+  ASSERT_EQ(run_program("merge " + map + " " + map + " -o " + quoted(out / "both.svx")).exit_code,
+            0);
+  const auto counts = [&](const std::string& of) {
+    const std::string text =
+        run_program("navmap " + of + " --min-observations 1 -o " + quoted(out / "n.yaml")).output;
+    return text.substr(text.find(" m: "), text.find('\n') - text.find(" m: "));
+  };
+  EXPECT_EQ(counts(quoted(out / "both.svx")), counts(map));
+}
+
 TEST(Merge, MapsOfDifferentVoxelSizesAreRefused) {
   const fs::path data = office_extract("data", 3), out = empty_folder("out");
   for (const char* size : {"0.1", "0.2"})

@@ -47,19 +47,55 @@ void print_counts(const std::string& output, const OccupancyGrid2D& grid) {
             << "\n";
 }
 
+// The image and the picture go beside it under the same name, so it must not be theirs.
+std::string yaml_name(const std::string& output) {
+  const std::string ending = std::filesystem::path(output).extension();
+  if (ending.empty()) return output + ".yaml";
+  if (ending == ".yaml" || ending == ".yml") return output;
+  throw UsageError(output + ": the name of a navigation map ends in .yaml");
+}
+
+// Of the run that made the map, or the defaults.
+NavmapParams navmap_params_of(const VoxelMap& map, const std::string& source) {
+  PipelineConfig config;
+  if (const auto text = map.attachments.find("config.yaml"); text != map.attachments.end())
+    apply_settings(settings_of(text->second, source + ", config.yaml"), config);
+  return config.navmap;
+}
+
+bool have_same_band(const NavmapParams& a, const NavmapParams& b) {
+  return a.column == b.column && a.min_height_m == b.min_height_m &&
+         a.max_height_m == b.max_height_m;
+}
+
+SightLines sight_lines_for(const NavmapParams& params, const VoxelMap& map,
+                           const std::string& source) {
+  SightLines sight_lines = attached_sight_lines(map, source);
+  if (!have_same_band(params, navmap_params_of(map, source))) sight_lines.keep_seen(map, params);
+  return sight_lines;
+}
+
+void warn_of_nothing(const OccupancyGrid2D& grid, const NavmapParams& params) {
+  const auto is_unknown = [](CellLabel label) { return label == CellLabel::unknown; };
+  if (!std::ranges::all_of(grid.labels, is_unknown)) return;
+  warn(
+      params.column == ColumnRule::whole
+          ? std::string("nothing of the map was seen often enough: every cell is unknown")
+          : fmt::format("nothing was seen often enough from {} to {} m above the floor: every cell "
+                        "is unknown",
+                        params.min_height_m, params.max_height_m));
+}
+
 ExitCode run(const NavmapOptions& options) {
+  const std::string output = yaml_name(options.output);
+  require_output(output, {options.map});
   const PipelineConfig config = options.config.load(shorthands(options));
   const VoxelMap map = read_voxel_map(options.map);
-  const auto attached = [&](const char* name, auto from_bytes) {
-    const auto blob = map.attachments.find(name);
-    using Evidence = decltype(from_bytes(blob->second, options.map));
-    return blob == map.attachments.end() ? Evidence{} : from_bytes(blob->second, options.map);
-  };
   const OccupancyGrid2D grid = write_navigation_map(
-      options.output, map, attached(kSightLinesAttachment, sight_lines_from_bytes),
-      attached(kWallFacesAttachment, wall_faces_from_bytes), {}, config.navmap,
-      mode_of(options.mode));
-  print_counts(options.output, grid);
+      output, map, sight_lines_for(config.navmap, map, options.map),
+      attached_wall_faces(map, options.map), {}, config.navmap, mode_of(options.mode));
+  print_counts(output, grid);
+  warn_of_nothing(grid, config.navmap);
   return ExitCode::ok;
 }
 

@@ -124,6 +124,30 @@ void update_held(const VoxelMap& map, const Cells& hit_cells, const NavmapParams
   }
 }
 
+// Each cell whose centre, moved back, lies in a cell of the set.
+CellSet moved(const CellSet& set, const SE3& T_to_from, double cell_size_m) {
+  const auto cell_under = [&](const SE3& T, const Eigen::Vector2i& cell) -> Eigen::Vector2i {
+    const Eigen::Vector2d center_m = (cell.cast<double>().array() + 0.5) * cell_size_m;
+    const Eigen::Vector3d place_m = T * Eigen::Vector3d(center_m.x(), center_m.y(), 0.0);
+    return (place_m.head<2>() / cell_size_m).array().floor().cast<int>();
+  };
+  const SE3 T_from_to = inverse(T_to_from);
+  CellSet out;
+  for_each_cell(set, [&](const Eigen::Vector2i& cell) {
+    const Eigen::Vector2i near = cell_under(T_to_from, cell);
+    for (int i = 0; i < 9; ++i) {
+      const Eigen::Vector2i place = near + Eigen::Vector2i(i % 3 - 1, i / 3 - 1);
+      if (set.contains(cell_under(T_from_to, place)))
+        out.insert(tile_of(place), std::uint64_t{1} << position_in_tile(place));
+    }
+  });
+  return out;
+}
+
+void insert_all(const CellSet& cells, CellSet& to) {
+  for (const auto& [tile, bits] : cells.tiles()) to.insert(tile, bits);
+}
+
 }  // namespace
 
 bool is_occupied(const ColumnState& column, bool is_held, const NavmapParams& params) {
@@ -143,6 +167,30 @@ void SightLines::observe(const VoxelMap& map, const Eigen::Vector2d& robot_xy_wo
   FrameTiles tiles(map, params, held_);
   mark_lines(robot, targets, !is_printed, tiles);
   tiles.merge_marks_into(free_);
+}
+
+void SightLines::merge(const SightLines& other, const SE3& T_map_other, double cell_size_m) {
+  insert_all(moved(other.free_, T_map_other, cell_size_m), free_);
+  insert_all(moved(other.held_, T_map_other, cell_size_m), held_);
+}
+
+void SightLines::keep_seen(const VoxelMap& map, const NavmapParams& params) {
+  NavmapParams however_seldom = params;
+  however_seldom.min_observations = 1;
+  CellSet kept;
+  for_each_column_tile(map, however_seldom, [&](const TileIndex& index, const ColumnTile& columns) {
+    std::uint64_t seen = 0;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      seen |= std::uint64_t{columns[i].is_known} << i;
+    kept.insert(index, seen & bits_of(free_, index));
+  });
+  free_ = std::move(kept);
+}
+
+SightLines attached_sight_lines(const VoxelMap& map, const std::string& source) {
+  const auto blob = map.attachments.find(kSightLinesAttachment);
+  return blob == map.attachments.end() ? SightLines{}
+                                       : sight_lines_from_bytes(blob->second, source);
 }
 
 std::string to_bytes(const SightLines& sight_lines) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "stereovox/core/se3.h"
 #include "stereovox/navmap/cell_set.h"
 #include "stereovox/navmap/column_states.h"
 #include "stereovox/navmap/navmap_params.h"
@@ -29,6 +30,13 @@ class SightLines {
   void observe(const VoxelMap& map, const Eigen::Vector2d& robot_xy_world,
                std::span<const Eigen::Vector3i> hits, const NavmapParams& params);
 
+  // Adds those of another map, moved by T_map_other and seen from above, as merge() of maps does.
+  void merge(const SightLines& other, const SE3& T_map_other, double cell_size_m);
+
+  // Forgets the free cells of which nothing was seen that the column rule asks for: lines that were
+  // drawn between the obstacles of one band of heights say little of another one.
+  void keep_seen(const VoxelMap& map, const NavmapParams& params);
+
   const CellSet& free_cells() const { return free_; }
   // Occupied cells that hysteresis may keep so; empty without hysteresis.
   const CellSet& held_cells() const { return held_; }
@@ -47,6 +55,8 @@ bool is_occupied(const ColumnState& column, bool is_held, const NavmapParams& pa
 std::string to_bytes(const SightLines& sight_lines);
 
 // Throws Error "<source>: ..." when the bytes are not what to_bytes writes.
+// Those attached to a map are none where nothing is attached.
+SightLines attached_sight_lines(const VoxelMap& map, const std::string& source);
 SightLines sight_lines_from_bytes(std::string_view bytes, const std::string& source);
 
 }  // namespace stereovox

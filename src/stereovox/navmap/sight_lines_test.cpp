@@ -215,5 +215,54 @@ TEST(SightLines, DamagedBytesAreErrors) {
     EXPECT_NE(complaint_about_lines(good.substr(0, length)), "") << length;
 }
 
+TEST(SightLines, OfAnotherBandSayNothingWhereNothingWasSeen) {
+  Scene scene = drawn_scene({"R??.?h"});
+  SightLines sight_lines;
+  sight_lines.observe(scene.map, scene.robot_xy, scene.hits, {});
+  sight_lines.keep_seen(scene.map, {});
+  EXPECT_EQ(drawing_of(project_to_2d(scene.map, sight_lines, {})), (Drawing{".?#"}));
+  sight_lines.keep_seen(scene.map, {.min_height_m = 5.0, .max_height_m = 6.0});
+  EXPECT_TRUE(sight_lines.free_cells().tiles().empty());
+}
+
+SE3 placed(double x_m, double y_m, double yaw_rad) {
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())),
+          {x_m, y_m, 0.0}};
+}
+
+SightLines along_x(int cells) {
+  VoxelMap map(kDrawnVoxelSize_m);
+  const Eigen::Vector3i target(cells, 0, kDrawnLayer);
+  set_voxel(map, target, kOccupiedState);
+  SightLines sight_lines;
+  sight_lines.observe(map, {0.5 * kDrawnVoxelSize_m, 0.5 * kDrawnVoxelSize_m},
+                      std::vector<Eigen::Vector3i>{target}, {});
+  return sight_lines;
+}
+
+std::size_t count_free(const SightLines& sight_lines) {
+  std::size_t count = 0;
+  for_each_cell(sight_lines.free_cells(), [&](const Eigen::Vector2i&) { ++count; });
+  return count;
+}
+
+TEST(SightLines, OfAnotherMapMoveWithIt) {
+  SightLines merged = along_x(3);
+  merged.merge(along_x(4), placed(10 * kDrawnVoxelSize_m, 0.0, 0.0), kDrawnVoxelSize_m);
+  EXPECT_EQ(count_free(merged), 3U + 4U);
+  for (const int x : {0, 1, 2, 10, 11, 12, 13})
+    EXPECT_TRUE(merged.free_cells().contains({x, 0})) << x;
+}
+
+TEST(SightLines, LeaveNoGapsWhereAMapIsTurned) {
+  constexpr double kQuarter = 1.5707963267948966;
+  SightLines turned;
+  turned.merge(along_x(5), placed(kDrawnVoxelSize_m, 0.0, kQuarter), kDrawnVoxelSize_m);
+  for (int y = 0; y < 5; ++y) EXPECT_TRUE(turned.free_cells().contains({0, y})) << y;
+  SightLines aslant;
+  aslant.merge(along_x(200), placed(0.3, 0.1, 0.5), kDrawnVoxelSize_m);
+  EXPECT_NEAR(static_cast<double>(count_free(aslant)), 200.0, 10.0) << "the area stays";
+}
+
 }  // namespace
 }  // namespace stereovox

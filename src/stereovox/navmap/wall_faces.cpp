@@ -63,6 +63,14 @@ Band band_of(const FrameView& frame, double floor_z_m, const NavmapParams& param
   return {floor_z_m + params.min_height_m, floor_z_m + params.max_height_m};
 }
 
+// In whole steps, if it is about that.
+std::optional<int> whole_steps(double length_m, double step_m) {
+  constexpr double kRounding = 1e-6;
+  const double steps = length_m / step_m;
+  if (std::abs(steps - std::round(steps)) > kRounding) return std::nullopt;
+  return static_cast<int>(std::lround(steps));
+}
+
 // Bytes that to_bytes does not write.
 struct Damaged : std::exception {};
 
@@ -137,6 +145,33 @@ std::optional<double> WallFaces::reach_m(const Eigen::Vector2i& cell,
       farthest_m = std::max(farthest_m.value_or(-kWholeCell), static_cast<double>(back.mean_m));
   }
   return farthest_m;
+}
+
+bool WallFaces::merge(const WallFaces& other, const SE3& T_map_other, double cell_size_m) {
+  const Eigen::Vector3d& shift_m = T_map_other.translation;
+  const auto x = whole_steps(shift_m.x(), cell_size_m), y = whole_steps(shift_m.y(), cell_size_m);
+  const auto slices = whole_steps(shift_m.z(), kFaceSliceHeight_m);
+  if (!x || !y || !slices || !T_map_other.rotation.matrix().isIdentity()) return other.is_empty();
+  for (const auto& [height, slice] : other.slices_) add_moved(height + *slices, slice, {*x, *y});
+  return true;
+}
+
+void WallFaces::add_moved(int height, const Slice& slice, const Eigen::Vector2i& shift) {
+  Slice& to = slices_[height];
+  for (const auto& [index, tile] : slice)
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      if (tile[i].information_per_m2 <= 0.0F) continue;
+      const Eigen::Vector2i cell = cell_at(index, static_cast<int>(i) / kFacesPerCell) + shift;
+      const std::size_t face = i % kFacesPerCell;
+      const auto first = static_cast<std::size_t>(position_in_tile(cell)) * kFacesPerCell;
+      to[tile_of(cell)][first + face].add(static_cast<double>(tile[i].mean_m),
+                                          static_cast<double>(tile[i].information_per_m2));
+    }
+}
+
+WallFaces attached_wall_faces(const VoxelMap& map, const std::string& source) {
+  const auto blob = map.attachments.find(kWallFacesAttachment);
+  return blob == map.attachments.end() ? WallFaces{} : wall_faces_from_bytes(blob->second, source);
 }
 
 // The number of tiles as u32. Of each, i32 x, i32 y, one bit for each face that was seen, then mean

@@ -15,6 +15,7 @@
 #include <string>
 #include <string_view>
 
+#include "stereovox/core/se3.h"
 #include "stereovox/navmap/cell_set.h"
 #include "stereovox/navmap/navmap_params.h"
 #include "stereovox/occupancy/frame_view.h"
@@ -51,6 +52,10 @@ class WallFaces {
   static constexpr double kWholeCell = std::numeric_limits<double>::infinity();
   std::optional<double> reach_m(const Eigen::Vector2i& cell, const Eigen::Vector2i& step) const;
 
+  // Adds those of another map, moved by T_map_other, and says whether it could: faces follow whole
+  // cells and slices only, and no turn.
+  bool merge(const WallFaces& other, const SE3& T_map_other, double cell_size_m);
+
   bool is_empty() const { return slices_.empty(); }
   bool operator==(const WallFaces&) const = default;
 
@@ -71,6 +76,7 @@ class WallFaces {
 
   static void add(const PointMeasurement& point, int axis, double cell_size_m, double bias_m,
                   Slice& slice);
+  void add_moved(int height, const Slice& slice, const Eigen::Vector2i& shift);
   static WallFace face_behind(const Slice& slice, const Eigen::Vector2i& cell,
                               const Eigen::Vector2i& step);
   static void append(const Slice& slice, std::string& bytes);
@@ -83,6 +89,8 @@ class WallFaces {
 std::string to_bytes(const WallFaces& faces);
 
 // Throws Error "<source>: ..." when the bytes are not what to_bytes writes.
+// Those attached to a map are none where nothing is attached.
+WallFaces attached_wall_faces(const VoxelMap& map, const std::string& source);
 WallFaces wall_faces_from_bytes(std::string_view bytes, const std::string& source);
 
 }  // namespace stereovox

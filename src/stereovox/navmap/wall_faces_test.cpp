@@ -106,6 +106,31 @@ TEST(WallFaces, NewPointsMoveAFaceThatIsKnownWell) {
   EXPECT_LT(face.mean_m, -0.03F);
 }
 
+SE3 moved_by(double x_m, double y_m, double z_m) {
+  return {Eigen::Quaterniond::Identity(), {x_m, y_m, z_m}};
+}
+
+TEST(WallFaces, OfAnotherMapMoveByWholeCellsAndSlices) {
+  const WallFaces other = faces_of_wall(0.0, 1.98);
+  WallFaces merged;
+  EXPECT_TRUE(merged.merge(other, moved_by(10 * kFaceCell_m, -3 * kFaceCell_m, 0.5), kFaceCell_m));
+  EXPECT_EQ(merged.reach_m({17, -3}, kTowardsCamera), other.reach_m({7, 0}, kTowardsCamera));
+  EXPECT_FALSE(merged.reach_m({7, 0}, kTowardsCamera).has_value());
+  for (const SE3& T : {moved_by(0.1, 0, 0), moved_by(0, 0, 0.1),
+                       SE3{Eigen::Quaterniond(0, 0, 0, 1), Eigen::Vector3d::Zero()}}) {
+    EXPECT_FALSE(merged.merge(other, T, kFaceCell_m));
+    EXPECT_TRUE(merged.merge(WallFaces{}, T, kFaceCell_m)) << "nothing is lost";
+  }
+}
+
+TEST(WallFaces, OfTwoMapsAreMeansWeightedByWhatIsKnown) {
+  WallFaces merged = faces_of_wall(0.0, 1.96);
+  EXPECT_TRUE(merged.merge(faces_of_wall(0.0, 1.98), SE3{}, kFaceCell_m));
+  const auto reach = merged.reach_m({7, 0}, kTowardsCamera);
+  ASSERT_TRUE(reach.has_value());
+  EXPECT_NEAR(*reach, 0.03, 0.01);
+}
+
 TEST(WallFaces, SurviveTheirBytes) {
   const WallFaces before = faces_of_wall(0.0, 1.98);
   EXPECT_FALSE(before.is_empty());

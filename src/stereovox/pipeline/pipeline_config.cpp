@@ -96,6 +96,10 @@ Settings read_settings(const std::filesystem::path& path) {
   return settings_of(load_yaml(path), path.string());
 }
 
+Settings settings_of(const std::string& yaml, const std::string& source) {
+  return settings_of(parse_yaml(yaml, source), source);
+}
+
 Settings settings_of(const YAML::Node& node, const std::string& source) {
   Settings settings;
   if (node.IsNull()) return settings;

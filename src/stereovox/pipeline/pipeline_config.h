@@ -63,6 +63,9 @@ Settings preset_settings(const std::string& name);
 // ..." for a file that is no such thing; unknown names are found when they are applied.
 Settings read_settings(const std::filesystem::path& path);
 
+// The same from text; `source` is named in errors.
+Settings settings_of(const std::string& yaml, const std::string& source);
+
 // The settings below a YAML node, named from there; `source` is named in errors.
 Settings settings_of(const YAML::Node& node, const std::string& source);
 
