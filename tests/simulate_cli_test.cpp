@@ -38,6 +38,20 @@ TEST(Simulate, WritesADriveThatCheckAccepts) {
   EXPECT_EQ(check.exit_code, 0) << check.output;
 }
 
+TEST(Simulate, AnEarlierDataSetIsReplacedOnlyOnRequestAndWhole) {
+  const fs::path folder = empty_folder("simulate_twice"),
+                 more = folder / "drive" / "left" / "x.png";
+  fs::create_directories(more.parent_path());
+  std::ofstream(more) << "of another data set";
+  const ProgramResult refused = simulate_studio(folder);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.output.find("holds a data set; give --overwrite"), std::string::npos);
+  EXPECT_TRUE(fs::exists(more));
+  const ProgramResult replaced = simulate_studio(folder, "--overwrite");
+  EXPECT_EQ(replaced.exit_code, 0) << replaced.output;
+  EXPECT_FALSE(fs::exists(more));
+}
+
 TEST(Simulate, SolidsOfTheIdealMapAreFilled) {
   const fs::path folder = empty_folder("simulate_ideal");
   const ProgramResult result = simulate_studio(folder, "--cell-size 0.25");

@@ -58,6 +58,8 @@ void write_confidence(const std::string& path, const DisparityImage& disparity) 
 
 ExitCode run(const DisparityOptions& options) {
   const PipelineConfig config = options.config.load();
+  for (const std::string& output : {options.output, options.confidence, options.picture})
+    require_output(output, {options.left, options.right, options.calibration});
   const RectifiedPair pair = rectified_pair(options, config.rectification);
   const std::string warning =
       judge(summarize({measure_corner_offsets(pair)}), config.rectification, options.left);

@@ -41,7 +41,7 @@ void check_form(const std::string& output) {
 
 ExitCode run(const ExportOptions& options) {
   check_form(options.output);
-  require_folder_of(options.output);
+  require_output(options.output, {options.map});
   write(options, read_voxel_map(options.map));
   std::cout << fmt::format("{}: {} bytes\n", options.output, fs::file_size(options.output));
   return ExitCode::ok;

@@ -95,6 +95,7 @@ ExitCode run(const InfoOptions& options) {
     return ExitCode::ok;
   }
   const fs::path path = options.what;
+  require_output(options.picture, {path, fs::path(path).replace_extension(".pgm")});
   if (path.extension() == ".svx")
     print_map(path, options.picture);
   else if (path.extension() == ".yaml")

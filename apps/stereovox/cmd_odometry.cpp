@@ -8,6 +8,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "command.h"
+#include "interrupt.h"
 #include "stereovox/core/timestamp.h"
 #include "stereovox/io/trajectory_file.h"
 #include "stereovox/pipeline/matched_frames.h"
@@ -45,7 +46,9 @@ Tracked track(StereoSequence& sequence, const PipelineConfig& config, bool verbo
   if (!frames.warning().empty()) warn(frames.warning());
   Odometry odometry(rectifier.camera(), config.odometry);
   Tracked tracked;
-  while (const std::optional<MatchedFrame> frame = frames.next()) {
+  while (!was_interrupted()) {
+    const std::optional<MatchedFrame> frame = frames.next();
+    if (!frame) break;
     Duration duration;
     const OdometryResult motion =
         timed(duration, [&] { return odometry.track(frame->pair, frame->disparity); });
@@ -67,10 +70,11 @@ Tracked track(StereoSequence& sequence, const PipelineConfig& config, bool verbo
 
 ExitCode run(const OdometryOptions& options) {
   const PipelineConfig config = options.config.load(options.source.shorthands());
-  require_folder_of(options.output);
+  for (const std::string& output : {options.output, options.kitti_output}) require_output(output);
   const std::unique_ptr<StereoSequence> sequence = options.source.open(config);
   for (const std::string& remark : sequence->info().remarks) warn(remark);
   cv::setNumThreads(std::max(1, config.thread_count() - 1));
+  catch_interrupt();
   const Tracked tracked = track(*sequence, config, options.verbose);
   if (tracked.segments.empty()) throw Error(options.source.source + ": no frame was tracked");
 
@@ -83,6 +87,7 @@ ExitCode run(const OdometryOptions& options) {
       "{}: {} poses, {:.3f} m; {} of {} frames lost, {} segments; median {:.1f} ms a frame\n",
       options.output, trajectory.size(), path_length_m(trajectory), tracked.lost, tracked.frames,
       tracked.segments.size(), tracked.times.summary("odometry").median_ms);
+  if (was_interrupted()) return ExitCode::interrupted;
   return 100.0 * (tracked.frames - tracked.lost) >= config.min_tracked_percent * tracked.frames
              ? ExitCode::ok
              : ExitCode::below_quality_gate;

@@ -12,6 +12,7 @@
 #include "stereovox/io/trajectory_file.h"
 #include "stereovox/occupancy/frame_view.h"
 #include "stereovox/pipeline/build_maps.h"
+#include "stereovox/pipeline/output_folder.h"
 #include "stereovox/pipeline/outputs.h"
 #include "stereovox/pipeline/report.h"
 
@@ -70,6 +71,15 @@ void show_remarks(const StereoSequence& sequence, std::size_t from) {
   for (std::size_t i = from; i < remarks.size(); ++i) warn(remarks[i]);
 }
 
+bool holds_images(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::filesystem::path ending = entry.path().extension();
+    const bool is_result = entry.path().stem() == "nav";
+    if (!is_result && (ending == ".png" || ending == ".jpg" || ending == ".pgm")) return true;
+  }
+  return false;
+}
+
 void print_source(const StereoSequence& sequence) {
   const SequenceInfo& info = sequence.info();
   const PinholeCamera& c = sequence.rig().left.pinhole;
@@ -95,8 +105,18 @@ void print_lost(const BuildResult& result) {
                              lost.frames, lost.reason);
   if (result.segments.size() > 1)
     std::cout << fmt::format(
-        "{} segments, which share no common frame; each further one has a folder of its own\n",
-        result.segments.size());
+        "{} segments, which share no common frame; further ones are in segment_2 to segment_{}\n",
+        result.segments.size(), result.segments.size());
+}
+
+// The names of the results, and how many folders of further segments there are.
+std::string written_to(const std::filesystem::path& folder) {
+  std::string names;
+  for (const char* name : {"map.svx", "nav.pgm", "nav.yaml", "nav.png", "trajectory.tum",
+                           "trajectory_kitti.txt", "report.json", "config.yaml"})
+    if (std::filesystem::exists(folder / name))
+      names += (names.empty() ? "" : " ") + std::string(name);
+  return names;
 }
 
 void print_summary(const RunOptions& options, const StereoSequence& sequence,
@@ -105,10 +125,14 @@ void print_summary(const RunOptions& options, const StereoSequence& sequence,
   const MapCounts counts = count_voxels(main.map, config.navmap.threshold);
   std::cout << main.world.source << "\n";
   print_lost(result);
-  std::cout << fmt::format(
-      "{} of {} frames tracked, {} pairs skipped, {:.2f} m, {:.1f} s, {:.1f} fps\n", result.tracked,
-      result.frames, sequence.skipped().size(), path_length_m(main.trajectory), result.wall_s,
-      result.frames / std::max(result.wall_s, 1e-9));
+  std::cout << fmt::format("{}{} of {} frames tracked, {} pairs skipped, {:.1f} s, {:.1f} fps\n",
+                           result.was_stopped ? "stopped early: " : "", result.tracked,
+                           result.frames, sequence.skipped().size(), result.wall_s,
+                           result.frames / std::max(result.wall_s, 1e-9));
+  if (result.segments.size() > 1)
+    std::cout << fmt::format("the map is that of the longest segment, {} frames\n",
+                             main.trajectory.size());
+  std::cout << fmt::format("way of {:.2f} m\n", path_length_m(main.trajectory));
   std::cout << fmt::format("{} voxels of {} m: {} occupied, {} free, {:.1f} MB\n", counts.observed,
                            main.map.voxel_size_m(), counts.occupied, counts.free,
                            static_cast<double>(main.map.memory_bytes()) / 1e6);
@@ -117,9 +141,7 @@ void print_summary(const RunOptions& options, const StereoSequence& sequence,
       "surfaces are marked up to {:.1f} m away, space is cleared up to {:.1f} m\n",
       ranged.max_depth_m, ranged.max_clearing_m);
   print_stages(result.times);
-  std::cout << "written to " << options.output
-            << ": map.svx nav.pgm nav.yaml nav.png trajectory.tum trajectory_kitti.txt report.json "
-               "config.yaml\n";
+  std::cout << "written to " << options.output << ": " << written_to(options.output) << "\n";
 }
 
 ProgressSink sink_for(RunDisplay& display) {
@@ -127,8 +149,10 @@ ProgressSink sink_for(RunDisplay& display) {
           [&](const std::string& text) { display.warn(text); }, was_interrupted};
 }
 
-ExitCode exit_code(const PipelineConfig& config, const BuildResult& result) {
+ExitCode exit_code(const PipelineConfig& config, const BuildResult& result,
+                   const std::filesystem::path& folder) {
   if (result.was_stopped) return ExitCode::interrupted;
+  if (!std::filesystem::exists(folder / "nav.yaml")) return ExitCode::bad_input;
   if (result.tracked_percent() >= config.min_tracked_percent) return ExitCode::ok;
   std::cerr << fmt::format(
       "stereovox: only {:.1f} % of the frames were tracked, less than min_tracked_percent = {}\n",
@@ -136,11 +160,21 @@ ExitCode exit_code(const PipelineConfig& config, const BuildResult& result) {
   return ExitCode::below_quality_gate;
 }
 
+// Pictures among the images of a data set would be taken for some of them.
+void refuse_folder_of_images(const std::filesystem::path& output, const std::string& source) {
+  namespace fs = std::filesystem;
+  if (!fs::is_directory(output) || !fs::is_directory(source)) return;
+  const fs::path inside = fs::relative(output, source);
+  if (inside == "." || (*inside.begin() != ".." && holds_images(output)))
+    throw UsageError(output.string() + ": is a folder of the data set; results need their own");
+}
+
 ExitCode run(const RunOptions& options) {
   const PipelineConfig config = options.config.load(shorthands(options));
   const std::unique_ptr<StereoSequence> sequence = options.source.open(config);
   const std::optional<Trajectory> poses = given_poses(options.poses, *sequence);
-  prepare_output_folder(options.output, options.overwrite);
+  refuse_folder_of_images(options.output, options.source.source);
+  OutputFolder folder(options.output, options.overwrite);
   const bool talks = !options.quiet && !options.json_progress;
   if (talks) print_source(*sequence);
   const std::size_t remarks_before = sequence->info().remarks.size();
@@ -156,14 +190,18 @@ ExitCode run(const RunOptions& options) {
   show_remarks(*sequence, remarks_before);
   for (const SkippedPair& pair : sequence->skipped())
     warn(fmt::format("{}: skipped: {}", pair.name, pair.reason));
+  if (!result.failure.empty() && folder.holds_results())
+    throw ResourceError(result.failure + "; the earlier results in " + options.output +
+                        " are kept");
   const std::size_t warned = result.warnings.size();
-  write_outputs(options.output, *sequence, config, result);
+  write_outputs(folder.staging(), *sequence, config, result);
+  folder.publish();
   for (std::size_t i = warned; i < result.warnings.size(); ++i) warn(result.warnings[i]);
   if (!result.failure.empty())
     throw ResourceError(result.failure + "; what was mapped before is written to " +
                         options.output);
   if (talks) print_summary(options, *sequence, config, result);
-  return exit_code(config, result);
+  return exit_code(config, result, folder.path());
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ OccupancyGrid2D read_compared(const MapOptions& options, const IdealMap& ideal) 
 ExitCode score(const MapOptions& options) {
   const MapScoreParams params = params_of(options);
   for (const std::string& output : {options.json, options.csv, options.plot})
-    if (!output.empty()) require_folder_of(output);
+    require_output(output, {options.ideal, options.map});
   MapScoreInput input;
   if (!options.doorways.empty()) input.doorways = read_doorways(options.doorways);
   const IdealMap ideal = read_ideal(options);
@@ -89,7 +89,7 @@ ExitCode score(const MapOptions& options) {
 ExitCode score(const VoxelOptions& options) {
   VoxelScoreParams params;
   apply_settings(parse_settings(options.settings), params);
-  if (!options.json.empty()) require_folder_of(options.json);
+  require_output(options.json, {options.ideal, options.map});
   const VoxelScore result =
       score_voxels(read_voxel_map(options.ideal), read_voxel_map(options.map), params);
   std::cout << to_text(result);

@@ -12,7 +12,6 @@
 #include "stereovox/experiment/ideal_maps.h"
 #include "stereovox/navmap/write_map_server.h"
 #include "stereovox/occupancy/voxel_map_file.h"
-#include "stereovox/pipeline/outputs.h"
 #include "stereovox/simulation/world_file.h"
 #include "stereovox/simulation/write_data_set.h"
 
@@ -66,6 +65,24 @@ void print_start(const std::string& output, const SE3& T_world_camera) {
       std::atan2(forward.y(), forward.x()) * 180 / std::numbers::pi);
 }
 
+// Frames of an earlier data set must not stay among those of a new one.
+void prepare_data_set_folder(const fs::path& folder, bool overwrite) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw ResourceError(fmt::format("{}: cannot be made ({})", folder.string(), error.message()));
+  for (const char* name :
+       {"left", "right", "truth", "mav0", "calib.yaml", "times.txt", "poses.txt"}) {
+    if (!fs::exists(folder / name)) continue;
+    if (!overwrite)
+      throw UsageError(folder.string() + ": holds a data set; give --overwrite to replace it");
+    fs::remove_all(folder / name, error);
+    if (error)
+      throw ResourceError(
+          fmt::format("{}: cannot be replaced ({})", (folder / name).string(), error.message()));
+  }
+}
+
 ExitCode run(const SimulateOptions& options) {
   World world = read_world(options.world);
   const std::string drive = options.drive.empty() ? default_drive(world) : options.drive;
@@ -73,7 +90,7 @@ ExitCode run(const SimulateOptions& options) {
   threads.threads = options.threads;
   const Simulation simulation(std::move(world), drive, params_of(options), options.world,
                               threads.thread_count());
-  prepare_output_folder(options.output, options.overwrite);
+  prepare_data_set_folder(options.output, options.overwrite);
   catch_interrupt();
   write_ideal_maps(options, simulation);
   DataSetOptions how{.truth_every = options.truth_every, .should_stop = was_interrupted};

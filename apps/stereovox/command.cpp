@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <iostream>
 
 #include "simulated_source.h"
@@ -9,6 +13,8 @@
 
 namespace stereovox {
 namespace {
+
+namespace fs = std::filesystem;
 
 template <class Value>
 void add_if_given(Settings& settings, const char* path, const std::optional<Value>& value) {
@@ -68,11 +74,19 @@ std::unique_ptr<StereoSequence> SourceOptions::open(const PipelineConfig& config
                                    : std::move(sequence);
 }
 
-void require_folder_of(const std::filesystem::path& file) {
-  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-  if (!std::filesystem::is_directory(folder))
+void require_output(const fs::path& file, const std::vector<fs::path>& inputs) {
+  if (file.empty()) return;
+  const fs::path folder = fs::absolute(file).parent_path();
+  if (!fs::is_directory(folder))
     throw ResourceError(file.string() + ": cannot be written, there is no folder " +
                         folder.string());
+  if (fs::is_directory(file)) throw ResourceError(file.string() + ": is a folder, not a file");
+  if (access(folder.c_str(), W_OK) != 0)
+    throw ResourceError(
+        fmt::format("{}: cannot be written ({})", file.string(), std::strerror(errno)));
+  for (const fs::path& input : inputs)
+    if (fs::exists(file) && fs::exists(input) && fs::equivalent(file, input))
+      throw UsageError(file.string() + ": is read by this command, it cannot be its output, too");
 }
 
 void warn(const std::string& text) { std::cerr << "stereovox: warning: " << text << "\n"; }

@@ -60,8 +60,10 @@ struct SourceOptions {
   std::unique_ptr<StereoSequence> open(const PipelineConfig& config) const;
 };
 
-// Throws ResourceError, before any work, when a file of this name could not be made.
-void require_folder_of(const std::filesystem::path& file);
+// Before any work: throws ResourceError when a file of this name could not be made, UsageError when
+// it is one of those that the command reads. No name, no file.
+void require_output(const std::filesystem::path& file,
+                    const std::vector<std::filesystem::path>& inputs = {});
 
 // Prints "stereovox: warning: ..." to standard error.
 void warn(const std::string& text);

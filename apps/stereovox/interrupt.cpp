@@ -16,6 +16,11 @@ void handle_interrupt(int signal) {
 
 }  // namespace
 
+void report_failed_writes() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
 void catch_interrupt() { std::signal(SIGINT, handle_interrupt); }
 
 bool was_interrupted() { return interrupted; }

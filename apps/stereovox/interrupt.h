@@ -3,6 +3,10 @@
 
 namespace stereovox {
 
+// A reader of the output that goes away, or a limit on the size of files, is no reason to lose the
+// work: writing then fails instead of ending the program.
+void report_failed_writes();
+
 void catch_interrupt();  // from now on
 bool was_interrupted();
 

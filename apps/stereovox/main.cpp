@@ -1,8 +1,10 @@
 // stereovox: stereo images in, navigation maps out.
 #include <iostream>
 #include <new>
+#include <opencv2/core.hpp>
 
 #include "command.h"
+#include "interrupt.h"
 #include "stereovox/core/error.h"
 #include "stereovox/core/nearest_name.h"
 #include "stereovox/core/version.h"
@@ -69,6 +71,9 @@ ExitCode parse_and_run(CLI::App& program, const Action& action, int argc, char**
     return fail(ExitCode::bad_input, error.what());
   } catch (const std::bad_alloc&) {
     return fail(ExitCode::resource, "out of memory");
+  } catch (const cv::Exception& error) {
+    if (error.code == cv::Error::StsNoMem) return fail(ExitCode::resource, "out of memory");
+    return fail(ExitCode::internal, "internal: " + error.err);
   } catch (const std::exception& error) {
     return fail(ExitCode::internal, std::string("internal: ") + error.what());
   }
@@ -88,6 +93,7 @@ ExitCode run_program(int argc, char** argv) {
 }  // namespace stereovox
 
 int main(int argc, char** argv) {
+  stereovox::report_failed_writes();
   try {
     return static_cast<int>(stereovox::run_program(argc, argv));
   } catch (...) {  // no memory even for a message

@@ -34,6 +34,9 @@ std::vector<MapSegment> MapBuilder::finish(StageTimes& times, std::vector<std::s
     if (!segment.placed) continue;
     for (const std::string& loss : segment.placed->map.forget_unreadable_tiles())
       warnings.push_back(loss);
+    if (segment.placed->world.is_assumed)
+      warnings.push_back("heights, and so the navigation map, may be wrong: " +
+                         segment.placed->world.source);
     finished.push_back(std::move(*segment.placed));
   }
   if (finished.empty()) finished.push_back(empty_segment(0, WorldFrame{}));

@@ -2,11 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-
 #include "stereovox/core/error.h"
 #include "stereovox/io/atomic_file.h"
 #include "stereovox/io/image_file.h"
@@ -22,29 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 3> kResultNames = {"map.svx", "nav.yaml", "report.json"};
-
 void make_folder(const fs::path& folder) {
   std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
-    throw ResourceError(folder.string() + ": is a file, not a folder");
   fs::create_directories(folder, error);
   if (error)
     throw ResourceError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-}
-
-void check_writable(const fs::path& folder) {
-  const fs::path probe = folder / ".stereovox_probe";
-  std::ofstream file(probe);
-  file << "probe" << std::flush;
-  const int reason = errno;
-  const bool is_good = file.good();
-  file.close();
-  std::error_code ignored;
-  fs::remove(probe, ignored);
-  if (!is_good)
-    throw ResourceError(
-        fmt::format("{}: cannot be written to: {}", folder.string(), std::strerror(reason)));
 }
 
 // Threads and memory never change results, so they must not change the map's bytes.
@@ -76,23 +53,20 @@ void write_segment(const fs::path& folder, const PipelineConfig& config, MapSegm
   segment.map.attachments[kSightLinesAttachment] = to_bytes(segment.sight_lines);
   attach(segment.wall_faces, segment.map, warnings);
   write_voxel_map(folder / "map.svx", segment.map);
-  write_navigation_map(folder / "nav.yaml", segment.map, segment.sight_lines, segment.wall_faces,
-                       segment.trajectory, config.navmap, MapServerMode::trinary);
   write_tum(folder / "trajectory.tum", segment.trajectory,
             "left rectified camera (x right, y down, z forward) in the world (z up)");
   write_kitti_poses(folder / "trajectory_kitti.txt", segment.trajectory);
+  try {
+    write_navigation_map(folder / "nav.yaml", segment.map, segment.sight_lines, segment.wall_faces,
+                         segment.trajectory, config.navmap, MapServerMode::trinary);
+  } catch (const ResourceError&) {
+    throw;
+  } catch (const Error& error) {  // too wide: no reason to lose all else
+    warnings.push_back(std::string("there is no navigation map: ") + error.what());
+  }
 }
 
 }  // namespace
-
-void prepare_output_folder(const fs::path& folder, bool overwrite) {
-  make_folder(folder);
-  for (const char* name : kResultNames)
-    if (!overwrite && fs::exists(folder / name))
-      throw UsageError(folder.string() +
-                       ": holds the results of a run; give --overwrite to replace them");
-  check_writable(folder);
-}
 
 void write_outputs(const fs::path& folder, const StereoSequence& sequence,
                    const PipelineConfig& config, BuildResult& result) {

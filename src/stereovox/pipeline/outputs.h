@@ -15,11 +15,8 @@
 
 namespace stereovox {
 
-// Makes sure before the work that its results can be written. Throws ResourceError when the folder
-// cannot be made or written to, UsageError when it holds results already and `overwrite` is false.
-void prepare_output_folder(const std::filesystem::path& folder, bool overwrite);
-
-// Each file appears whole or not at all. Throws ResourceError.
+// Each file appears whole or not at all. A navigation map that would be too wide is left out, with
+// a warning in the result. Throws ResourceError.
 void write_outputs(const std::filesystem::path& folder, const StereoSequence& sequence,
                    const PipelineConfig& config, BuildResult& result);
 

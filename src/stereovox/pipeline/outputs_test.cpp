@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
-#include "stereovox/core/error.h"
 #include "stereovox/io/temporary_folder.h"
 #include "stereovox/occupancy/byte_buffer.h"
 #include "stereovox/occupancy/voxel_map_file.h"
@@ -14,26 +12,6 @@ namespace stereovox {
 namespace {
 
 namespace fs = std::filesystem;
-
-TEST(Outputs, AFolderIsMadeAndItsEarlierResultsAreProtected) {
-  const TemporaryFolder folder;
-  const fs::path out = folder.path() / "a" / "b";
-  prepare_output_folder(out, false);
-  EXPECT_TRUE(fs::is_directory(out));
-  EXPECT_TRUE(fs::is_empty(out));
-  std::ofstream(out / "map.svx") << "precious";
-  EXPECT_THROW(prepare_output_folder(out, false), UsageError);
-  EXPECT_NO_THROW(prepare_output_folder(out, true));
-  EXPECT_EQ(fs::file_size(out / "map.svx"), 8U);
-}
-
-TEST(Outputs, AFolderThatCannotBeUsedIsAResourceError) {
-  const TemporaryFolder folder;
-  std::ofstream(folder.path() / "file") << "x";
-  EXPECT_THROW(prepare_output_folder(folder.path() / "file", false), ResourceError);
-  EXPECT_THROW(prepare_output_folder(folder.path() / "file" / "below", false), ResourceError);
-  EXPECT_THROW(prepare_output_folder("/proc/stereovox", false), ResourceError);
-}
 
 // The bytes of so many tiles with every face seen.
 WallFaces many_faces(std::uint32_t tiles) {
@@ -84,6 +62,19 @@ TEST(Outputs, TooManyWallFacesAreLeftOutWithAWarningAndTheMapIsWritten) {
     EXPECT_EQ(map.attachments.contains(kWallFacesAttachment), tiles == kFew);
     EXPECT_EQ(result.warnings.size(), tiles == kFew ? 0U : 1U);
   }
+}
+
+TEST(Outputs, AMapTooWideForANavigationMapIsSavedWithoutOne) {
+  const TemporaryFolder folder;
+  BuildResult result = result_with({});
+  result.segments.front().map.set({200'000, 200'000, 5}, {.state = 0.9F, .observations = 5});
+  write_outputs(folder.path(), NoSequence{}, PipelineConfig{}, result);
+  EXPECT_EQ(read_voxel_map(folder.path() / "map.svx").known_voxel_count(), 2U);
+  for (const char* name : {"trajectory.tum", "report.json", "config.yaml"})
+    EXPECT_TRUE(fs::exists(folder.path() / name)) << name;
+  EXPECT_FALSE(fs::exists(folder.path() / "nav.yaml"));
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_TRUE(result.warnings.front().starts_with("there is no navigation map: "));
 }
 
 }  // namespace

@@ -86,7 +86,8 @@ double height_above(const Floor& floor, const SE3& T_segment_camera) {
 
 std::string describe_camera(const Floor& floor, const SE3& T_segment_camera, Source source) {
   constexpr const char* kHow[] = {"from the ground plane in the first frames", "as given",
-                                  "assumed: no ground plane was found; give --camera-height"};
+                                  "assumed: no ground plane was found; give both "
+                                  "--camera-height and --camera-pitch"};
   const Eigen::Vector3d forward = T_segment_camera.rotation * Eigen::Vector3d::UnitZ();
   const double pitch_deg = std::asin(std::clamp(forward.dot(floor.down), -1.0, 1.0)) / kDegree_rad;
   return fmt::format("camera {:.3f} m above the floor, pitched down {:.1f} deg ({})",
@@ -140,7 +141,7 @@ WorldFrame world_of_odometry(std::span<const GroundView> views, const WorldFrame
   const FoundFloor found = find_floor(views, params);
   const SE3 T_level_segment = level_world(found.floor, views.front().T_segment_camera);
   const SE3 T_world_level = is_first_segment ? start_pose(params) : SE3{};
-  return {T_world_level * T_level_segment, 0.0, found.text};
+  return {T_world_level * T_level_segment, 0.0, found.text, found.source == Source::assumed};
 }
 
 WorldFrame world_of_given_poses(std::span<const GroundView> views, const WorldFrameParams& params) {
@@ -148,10 +149,12 @@ WorldFrame world_of_given_poses(std::span<const GroundView> views, const WorldFr
   const SE3& T_segment_camera = views.front().T_segment_camera;
   if (!is_z_up(views))
     return {level_world(found.floor, T_segment_camera), 0.0,
-            "z of the given poses is not up, so the world was levelled: " + found.text};
+            "z of the given poses is not up, so the world was levelled: " + found.text,
+            found.source == Source::assumed};
   const bool is_level = -found.floor.down.z() > std::cos(kLevelTolerance_rad);
   if (found.source == Source::assumed || (found.source == Source::seen && !is_level))
-    return {SE3{}, 0.0, "floor taken at z = 0 of the given poses: no level ground plane was found"};
+    return {SE3{}, 0.0, "floor taken at z = 0 of the given poses: no level ground plane was found",
+            true};
   const double floor_z_m =
       T_segment_camera.translation.z() - height_above(found.floor, T_segment_camera);
   return {SE3{}, floor_z_m,

@@ -54,7 +54,8 @@ struct GroundView {
 struct WorldFrame {
   SE3 T_world_segment;
   double floor_z_m = 0.0;
-  std::string source;  // one line for the user: how it was found, with the numbers
+  std::string source;       // one line for the user: how it was found, with the numbers
+  bool is_assumed = false;  // nobody saw the floor, or said where it is
 };
 
 // For a trajectory that odometry began at its first camera. Only the first segment begins at the

@@ -68,12 +68,14 @@ TEST(WorldFrame, SaysWhenTheFloorIsAssumedOrGiven) {
   const std::vector<GroundView> views = {{SE3{}, std::nullopt}, {SE3{}, std::nullopt}};
   WorldFrameParams params;
   EXPECT_THAT(world_of_odometry(views, params).source,
-              testing::HasSubstr("assumed: no ground plane was found"));
+              testing::HasSubstr("assumed: no ground plane was found; give both --camera-height"));
+  EXPECT_TRUE(world_of_odometry(views, params).is_assumed);
   params.level = LevelSource::given;
   params.camera_height_m = 1.65;
   params.camera_pitch_deg = -2.0;
   EXPECT_EQ(world_of_odometry(views, params).source,
             "camera 1.650 m above the floor, pitched down -2.0 deg (as given)");
+  EXPECT_FALSE(world_of_odometry(views, params).is_assumed);
 }
 
 TEST(WorldFrame, KeepsAGivenWorldWithZUpAndFindsItsFloor) {
@@ -87,6 +89,7 @@ TEST(WorldFrame, KeepsAGivenWorldWithZUpAndFindsItsFloor) {
 TEST(WorldFrame, TakesZeroForTheFloorOfAGivenWorldThatShowsNone) {
   const std::vector<GroundView> views = {{in_z_up_world({3, 1, 1.62}, 4.0), std::nullopt}};
   EXPECT_EQ(world_of_given_poses(views, {}).floor_z_m, 0.0);
+  EXPECT_TRUE(world_of_given_poses(views, {}).is_assumed);
 }
 
 TEST(WorldFrame, LevelsAGivenWorldWhoseZIsNotUp) {

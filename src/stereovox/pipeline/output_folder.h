@@ -1,0 +1,35 @@
+// The folder of a run's results. New ones are made in a folder inside it and moved to their places
+// when all are there, so that a full disk or a kill leaves the earlier results as they were.
+#pragma once
+
+#include <filesystem>
+
+namespace stereovox {
+
+class OutputFolder {
+ public:
+  // Makes sure before the work that its results can be written: makes the folder, and keeps other
+  // processes out of it as long as the object lives. Throws ResourceError when it cannot be made or
+  // written to or another process is at work there, UsageError when it holds results already and
+  // `overwrite` is false.
+  OutputFolder(std::filesystem::path folder, bool overwrite);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  const std::filesystem::path& path() const { return folder_; }
+  bool holds_results() const;
+
+  // Where new results are to be written, under the names of outputs.h.
+  const std::filesystem::path& staging() const { return staging_; }
+  // Puts them in the place of all earlier ones. Throws ResourceError.
+  void publish();
+
+ private:
+  void lock();
+
+  std::filesystem::path folder_, staging_;
+  int lock_ = -1;  // the open folder
+};
+
+}  // namespace stereovox
