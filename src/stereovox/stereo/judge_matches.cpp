@@ -66,7 +66,11 @@ class Judge {
   // Writes the levels of confidence, the disparities that pass or 0, and 1 where islands may stay.
   void judge_row(int v, std::uint8_t* level, std::int16_t* passed, std::uint8_t* is_sure) const {
     table_.fill_level_row(features_, v, level);
+    const cv::Mat1b& left = pair_.left.pixels;
     const JudgedRow row = {.disparity = features_.disparity[v],
+                           .gray_above = left[std::max(v - 1, 0)],
+                           .gray = left[v],
+                           .gray_below = left[std::min(v + 1, left.rows - 1)],
                            .log_ratio = features_.log_ratio[v],
                            .left_right = features_.left_right[v],
                            .level = level,

@@ -136,6 +136,21 @@ TEST_F(JudgedMatches, OnesThatACameraDidNotRecordFail) {
   EXPECT_TRUE(found(7));
 }
 
+TEST_F(JudgedMatches, OnesInTheMiddleOfGlareFail) {
+  pair.left.pixels = cv::Mat1b(3, kWidth, std::uint8_t{255});
+  MatchFeatures rows = features_of_size(pair.left.pixels.size());
+  for (int v = 0; v < 3; ++v) {
+    features.disparity.copyTo(rows.disparity.row(v));
+    features.log_ratio.copyTo(rows.log_ratio.row(v));
+    features.left_right.copyTo(rows.left_right.row(v));
+    features.local_cost.copyTo(rows.local_cost.row(v));
+  }
+  pair.left.pixels(2, 7) = 254;
+  const DisparityImage image = judge_matches(pair, rows, search, kSure, 1);
+  EXPECT_EQ(image.disparity_px(1, 6), 0.0F);
+  EXPECT_GT(image.disparity_px(1, 7), 0.0F) << "a pixel below it shows something";
+}
+
 TEST_F(JudgedMatches, IslandsWithoutEnoughSurePixelsFail) {
   search.speckle_size_px = 9;
   EXPECT_TRUE(found(6)) << "nine pixels reach into the right image";

@@ -69,6 +69,9 @@ struct OwnedRow {
 // What is known of a row's matches, and what of it is enough: see judge_matches.h.
 struct JudgedRow {
   const std::int16_t* disparity = nullptr;
+  // Brightness of this row of the left image and of those beside it. Where all three are as bright
+  // as can be, there is light but no picture.
+  const std::uint8_t *gray_above = nullptr, *gray = nullptr, *gray_below = nullptr;
   const std::uint8_t *log_ratio = nullptr, *left_right = nullptr, *level = nullptr;
   int min_log_ratio = 0, max_left_right = 0, min_level = 0, sure_level = 0;
 };

@@ -284,12 +284,16 @@ void fill_levels(const LevelRow& row, int width_px, std::uint8_t* __restrict out
   }
 }
 
+constexpr int kSaturated_gray = 255;
+
 void judge_row(const JudgedRow& row, int width_px, Step* __restrict passed,
                std::uint8_t* __restrict is_sure) {
   const JudgedRow r = row;
   for (int u = 0; u < width_px; ++u) {
+    const int darkest = smaller(smaller(r.gray_above[u], r.gray_below[u]), r.gray[u]);
     const bool passes = (r.disparity[u] > 0) & (r.log_ratio[u] >= r.min_log_ratio) &
-                        (r.left_right[u] <= r.max_left_right) & (r.level[u] >= r.min_level);
+                        (r.left_right[u] <= r.max_left_right) & (r.level[u] >= r.min_level) &
+                        (darkest < kSaturated_gray);
     passed[u] = passes ? r.disparity[u] : Step{0};
     is_sure[u] = static_cast<std::uint8_t>(r.level[u] >= r.sure_level);
   }

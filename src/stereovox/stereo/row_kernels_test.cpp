@@ -73,7 +73,11 @@ std::vector<double> results(const RowKernels& kernels, int width) {
                  width, level.data());
   std::vector<std::int16_t> passed(width);
   std::vector<std::uint8_t> is_sure(width);
+  const std::vector<std::uint8_t> white(width, 255);
   kernels.judge({.disparity = members[0],
+                 .gray_above = white.data(),
+                 .gray = bytes[3].data(),
+                 .gray_below = white.data(),
                  .log_ratio = bytes[0].data(),
                  .left_right = bytes[1].data(),
                  .level = bytes[2].data(),
