@@ -231,6 +231,11 @@ TEST(BadInput, AFileThatIsNoMapAndNoCalibrationIsRefused) {
   const ProgramResult result = run_program("check " + quoted(file));
   EXPECT_EQ(result.exit_code, 3) << result.output;
   EXPECT_THAT(result.output, HasSubstr("words.yaml"));
+  const fs::path bag = empty_folder("bag") / "a.bag";
+  std::ofstream(bag) << "#ROSBAG V2.0\n";
+  const ProgramResult of_bag = run_program("check " + quoted(bag));
+  EXPECT_EQ(of_bag.exit_code, 3) << of_bag.output;
+  EXPECT_THAT(of_bag.output, HasSubstr("is a ROS 1 bag, which this program does not read"));
 }
 
 TEST(BadInput, ConversionsOfImagesAreStated) {

@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "stereovox/dataset/calibration.h"
+#include "stereovox/io/file_kind.h"
 #include "stereovox/io/yaml_file.h"
 #include "stereovox/navmap/read_map_server.h"
 #include "stereovox/occupancy/voxel_map_file.h"
@@ -137,6 +138,8 @@ ExitCode run(const CheckOptions& options) {
     if (!options.calibration.empty()) calibration = options.calibration;
     return check_source(path, calibration);
   }
+  if (const std::string kind = kind_of_file(path); !kind.empty())
+    throw Error(fmt::format("{}: is {}, which this program does not read", path.string(), kind));
   if (is_navigation_map(path)) return check_navigation_map(path);
   print_rig(read_plain_calibration(path));
   return ExitCode::ok;

@@ -9,6 +9,7 @@
 #include "interrupt.h"
 #include "run_display.h"
 #include "stereovox/core/timestamp.h"
+#include "stereovox/dataset/stamps.h"
 #include "stereovox/io/trajectory_file.h"
 #include "stereovox/occupancy/frame_view.h"
 #include "stereovox/pipeline/build_maps.h"
@@ -51,9 +52,16 @@ Settings shorthands(const RunOptions& options) {
   return settings;
 }
 
+// As its folder has them; none when it has not.
+std::vector<std::int64_t> stamps_of(const StereoSequence& sequence) {
+  std::vector<std::string> ignored;
+  constexpr std::size_t kNone = 0;
+  return read_times(sequence.info().path / "times.txt", kNone, 1.0, ignored);
+}
+
 std::optional<Trajectory> given_poses(const std::string& poses, const StereoSequence& sequence) {
   if (poses.empty()) return std::nullopt;
-  if (poses != "truth") return read_tum(poses);
+  if (poses != "truth") return read_poses(poses, stamps_of(sequence));
   if (sequence.truth().empty())
     throw Error(sequence.info().path.string() + ": has no true poses; --poses takes a file, too");
   return sequence.truth();
@@ -212,7 +220,9 @@ void add_run(CLI::App& program, Action& action) {
   options->source.add_to(*command);
   options->config.add_to(*command);
   command->add_option("-o,--output", options->output, "folder for the results")->required();
-  command->add_option("--poses", options->poses, "'truth' of the data set, or a TUM file")
+  command
+      ->add_option("--poses", options->poses,
+                   "'truth' of the data set, or a file in TUM's or KITTI's form")
       ->type_name("truth|FILE");
   command
       ->add_option("--preset", options->preset,

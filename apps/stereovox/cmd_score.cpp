@@ -39,11 +39,33 @@ ExitCode show(const Score& score, const std::string& json_path) {
   return ExitCode::ok;
 }
 
+std::vector<std::int64_t> stamps_of(const Trajectory& trajectory) {
+  std::vector<std::int64_t> stamps_ns;
+  for (const StampedPose& pose : trajectory) stamps_ns.push_back(pose.stamp_ns);
+  return stamps_ns;
+}
+
+std::vector<std::int64_t> whole_seconds(std::size_t count) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  std::vector<std::int64_t> stamps_ns;
+  for (std::size_t i = 0; i < count; ++i)
+    stamps_ns.push_back(static_cast<std::int64_t>(i) * kSecond_ns);
+  return stamps_ns;
+}
+
+// Poses without times have those of `other`, or of frames that are counted when it has none either.
+Trajectory read_beside(const std::string& path, const std::string& other) {
+  if (!holds_kitti_poses(path)) return read_tum(path);
+  return read_poses(path, holds_kitti_poses(other) ? whole_seconds(read_kitti_poses(path).size())
+                                                   : stamps_of(read_tum(other)));
+}
+
 ExitCode score(const TrajectoryOptions& options) {
   TrajectoryScoreParams params;
   apply_settings(parse_settings(options.settings), params);
   params.segment_lengths_m = options.segment_lengths_m;
-  return show(score_trajectory(read_tum(options.truth), read_tum(options.estimate), params),
+  return show(score_trajectory(read_beside(options.truth, options.estimate),
+                               read_beside(options.estimate, options.truth), params),
               options.json);
 }
 

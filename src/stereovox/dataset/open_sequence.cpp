@@ -10,6 +10,7 @@
 #include "stereovox/dataset/folder_sequence.h"
 #include "stereovox/dataset/kitti_layout.h"
 #include "stereovox/dataset/plain_layout.h"
+#include "stereovox/io/file_kind.h"
 
 namespace stereovox {
 namespace {
@@ -35,7 +36,11 @@ constexpr Layout kLayouts[] = {
 
 const Layout& layout_of(const fs::path& source) {
   if (!fs::exists(source)) throw Error(source.string() + ": no such folder");
-  if (!fs::is_directory(source)) throw Error(source.string() + ": is a file, a folder is needed");
+  if (!fs::is_directory(source)) {
+    const std::string kind = kind_of_file(source);
+    throw Error(fmt::format("{}: is {}, a folder of images is needed", source.string(),
+                            kind.empty() ? "a file" : kind));
+  }
   std::vector<std::string> looked_for;
   for (const Layout& layout : kLayouts) {
     if (layout.matches(source)) return layout;

@@ -23,7 +23,9 @@ TEST(OpenSequence, RefusesAFolderOfNoKnownLayoutAndSaysWhatItLookedFor) {
   EXPECT_EQ(complaint_about(folder.path() / "none"),
             (folder.path() / "none").string() + ": no such folder");
   EXPECT_EQ(complaint_about(folder.write("a.bag", "x")),
-            (folder.path() / "a.bag").string() + ": is a file, a folder is needed");
+            (folder.path() / "a.bag").string() + ": is a file, a folder of images is needed");
+  EXPECT_EQ(complaint_about(folder.write("b.bag", "#ROSBAG V2.0\n")),
+            (folder.path() / "b.bag").string() + ": is a ROS 1 bag, a folder of images is needed");
 }
 
 TEST(OpenSequence, RefusesLinksInACircle) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <sstream>
 
 #include "stereovox/core/error.h"
@@ -11,6 +12,7 @@
 namespace stereovox {
 namespace {
 
+constexpr std::size_t kKittiFields = 12;
 constexpr double kMinQuaternionNorm = 1e-6;
 // Published pose files carry six to seven digits, some four.
 constexpr double kRotationTolerance = 1e-2;
@@ -29,7 +31,7 @@ StampedPose tum_pose(const TextRecord& record) {
 }
 
 SE3 kitti_pose(const TextRecord& record) {
-  record.expect_fields(12);
+  record.expect_fields(kKittiFields);
   Eigen::Matrix<double, 3, 4> T;
   for (int i = 0; i < 12; ++i) T(i / 4, i % 4) = record.number(static_cast<std::size_t>(i));
   const NearestRotation nearest = nearest_rotation(T.leftCols<3>());
@@ -72,6 +74,25 @@ std::vector<SE3> read_kitti_poses(const std::filesystem::path& path) {
   std::vector<SE3> poses;
   for_each_record(path, [&](const TextRecord& record) { poses.push_back(kitti_pose(record)); });
   return poses;
+}
+
+bool holds_kitti_poses(const std::filesystem::path& path) {
+  std::optional<std::size_t> fields;
+  for_each_record(path, [&](const TextRecord& record) {
+    if (!fields) fields = record.fields.size();
+  });
+  return fields == kKittiFields;
+}
+
+Trajectory read_poses(const std::filesystem::path& path, std::span<const std::int64_t> stamps_ns) {
+  if (!holds_kitti_poses(path)) return read_tum(path);
+  const std::vector<SE3> poses = read_kitti_poses(path);
+  if (poses.size() != stamps_ns.size())
+    throw Error(fmt::format("{}: has {} poses without times, for {} frames", path.string(),
+                            poses.size(), stamps_ns.size()));
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < poses.size(); ++i) trajectory.push_back({stamps_ns[i], poses[i]});
+  return trajectory;
 }
 
 void write_kitti_poses(const std::filesystem::path& path, const Trajectory& trajectory) {

@@ -2,7 +2,9 @@
 // that are not finite, rotations that are none and time stamps that do not increase.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,11 @@ void write_tum(const std::filesystem::path& path, const Trajectory& trajectory,
 
 // KITTI form: twelve numbers a line, the upper 3x4 part of T_world_camera, row by row; no time.
 std::vector<SE3> read_kitti_poses(const std::filesystem::path& path);
+// Whether the file holds poses in this form.
+bool holds_kitti_poses(const std::filesystem::path& path);
+// Of either form; one without times gets `stamps_ns`, one for each pose, or an Error says how many
+// there are.
+Trajectory read_poses(const std::filesystem::path& path, std::span<const std::int64_t> stamps_ns);
 void write_kitti_poses(const std::filesystem::path& path, const Trajectory& trajectory);
 
 }  // namespace stereovox

@@ -73,6 +73,27 @@ TEST(TrajectoryFile, KittiPosesAreRowsOfTheMatrix) {
   EXPECT_LT(log(inverse(read[1]) * kPose).norm(), 1e-8);
 }
 
+TEST(TrajectoryFile, EitherFormIsReadAndOneWithoutTimesGetsThem) {
+  const TemporaryFolder folder;
+  const fs::path tum = folder.path() / "a.tum", kitti = folder.path() / "a.txt";
+  write_tum(tum, two_poses(), "");
+  write_kitti_poses(kitti, two_poses());
+  EXPECT_FALSE(holds_kitti_poses(tum));
+  EXPECT_TRUE(holds_kitti_poses(kitti));
+  const std::vector<std::int64_t> stamps_ns = {7, 9};
+  EXPECT_EQ(read_poses(tum, stamps_ns).back().stamp_ns, two_poses().back().stamp_ns);
+  const Trajectory read = read_poses(kitti, stamps_ns);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read.back().stamp_ns, 9);
+  EXPECT_LT(log(inverse(read.back().T_world_camera) * kPose).norm(), 1e-8);
+  try {
+    read_poses(kitti, {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("has 2 poses without times, for 0 frames"));
+  }
+}
+
 TEST(TrajectoryFile, BadKittiPosesAreRefusedByNumber) {
   const TemporaryFolder folder;
   const auto complaint = [&](const std::string& text) -> std::string {

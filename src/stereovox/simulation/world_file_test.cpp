@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "stereovox/core/error.h"
+#include "stereovox/io/file_bytes.h"
 #include "stereovox/simulation/ideal.h"
 #include "stereovox/simulation/room_for_test.h"
 #include "stereovox/simulation/simulated_sequence.h"
@@ -103,6 +104,15 @@ TEST(DriveOf, NamesTheDrivesThatAWorldHas) {
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "room.yaml: has no drive 'none', only main");
   }
+}
+
+TEST(WorldFile, TheOneInTheDocumentationCanBeDriven) {
+  const std::string page =
+      read_file(STEREOVOX_SOURCE_DIR "/docs/simulation.md", std::uint64_t{1} << 20);
+  const std::size_t begin = page.find("name: studio");
+  ASSERT_NE(begin, std::string::npos);
+  const World world = parse_world(page.substr(begin, page.find("```", begin) - begin), "page");
+  EXPECT_NO_THROW(Simulation(world, "main", SimulationParams{}, "page", 1));
 }
 
 class ShippedWorld : public testing::TestWithParam<std::filesystem::path> {};
