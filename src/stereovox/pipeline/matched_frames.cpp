@@ -5,6 +5,7 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <opencv2/core.hpp>
 #include <thread>
 
 #include "stereovox/stereo/rectification_check.h"
@@ -23,6 +24,21 @@ std::optional<MatchedFrame> rectified(StereoSequence& sequence, const Rectifier&
   out.index = frame->index;
   out.pair = timed(out.rectify, [&] { return rectifier.rectify(*frame); });
   return out;
+}
+
+// What a camera sees in the dark is its own noise.
+constexpr double kMinBrightness_gray = 5.0;
+
+bool is_dark(const RectifiedPair& pair) {
+  return std::min(cv::mean(pair.left.pixels)[0], cv::mean(pair.right.pixels)[0]) <
+         kMinBrightness_gray;
+}
+
+DisparityImage match_or_nothing(const RectifiedPair& pair, const MatcherParams& matcher,
+                                int threads) {
+  if (!is_dark(pair)) return match(pair, matcher, threads);
+  const cv::Size size = pair.left.pixels.size();
+  return {cv::Mat1f::zeros(size), cv::Mat1f::zeros(size), cv::Mat1f::zeros(size)};
 }
 
 }  // namespace
@@ -109,7 +125,8 @@ std::optional<MatchedFrame> MatchedFrames::make_next() {
     checked_.pop_back();
   }
   if (frame)
-    frame->disparity = timed(frame->match, [&] { return match(frame->pair, matcher_, threads_); });
+    frame->disparity =
+        timed(frame->match, [&] { return match_or_nothing(frame->pair, matcher_, threads_); });
   return frame;
 }
 
