@@ -1,6 +1,8 @@
 // stereovox simulate WORLD.yaml -o DATASET: a drive through a described world, with its truth.
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -37,8 +39,16 @@ SimulationParams params_of(const SimulateOptions& options) {
   return params;
 }
 
+// On a terminal one line that changes, in a log a line from time to time.
 void show_progress(int done, int frames) {
-  std::cout << fmt::format("\rframe {}/{}", done, frames) << (done == frames ? "\n" : "")
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::seconds kLogPeriod{10};
+  static Clock::time_point last_shown = Clock::now();
+  const bool is_terminal = isatty(STDOUT_FILENO) == 1, is_last = done == frames;
+  if (!is_terminal && !is_last && Clock::now() - last_shown < kLogPeriod) return;
+  last_shown = Clock::now();
+  std::cout << fmt::format("{}frame {}/{}{}", is_terminal ? "\r" : "", done, frames,
+                           is_terminal && !is_last ? "" : "\n")
             << std::flush;
 }
 

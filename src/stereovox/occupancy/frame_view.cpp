@@ -29,10 +29,10 @@ double reach_m(const OccupancyParams& params) {
   return kCornerByAxis * std::max(params.max_depth_m, params.max_clearing_m);
 }
 
-void check_reach(const SE3& T_world_camera, const OccupancyParams& params, double voxel_size_m) {
-  const double limit_m = voxel_size_m * kBlockSide * (kMaxBlockCoordinate - kBlockSide);
+void check_reach(const SE3& T_world_camera, const OccupancyParams& params) {
+  const double limit_m = farthest_camera_m(params);
   const Eigen::Vector3d& p = T_world_camera.translation;
-  if (p.cwiseAbs().maxCoeff() + reach_m(params) > limit_m)
+  if (p.cwiseAbs().maxCoeff() > limit_m)
     throw Error(
         fmt::format("camera at ({:.0f}, {:.0f}, {:.0f}) m is beyond the map's limit of "
                     "{:.0f} m from the origin",
@@ -92,6 +92,10 @@ double largest_sigma_m(const RectifiedCamera& camera) {
 
 }  // namespace
 
+double farthest_camera_m(const OccupancyParams& params) {
+  return params.voxel_size_m * kBlockSide * (kMaxBlockCoordinate - kBlockSide) - reach_m(params);
+}
+
 OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera& camera) {
   constexpr double kLeastDepth_m = 8.0, kLeastClearing_m = 5.0;
   constexpr double kLeastOfSurface_px = 8.0, kLeastOfFreeSpace_px = 13.0;
@@ -140,7 +144,7 @@ FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& cam
     throw Error(fmt::format("voxel size of the map is {} m, of the configuration {} m",
                             map.voxel_size_m(), params.voxel_size_m));
   const OccupancyParams ranged = with_ranges(params, camera);
-  check_reach(T_world_camera, ranged, map.voxel_size_m());
+  check_reach(T_world_camera, ranged);
   return {.disparity = disparity,
           .camera = camera,
           .params = ranged,

@@ -29,6 +29,10 @@ struct SamplingSteps {
 // at 4 m, or of a quarter of one where disparities are 11 px.
 OccupancyParams with_ranges(const OccupancyParams& params, const RectifiedCamera& camera);
 
+// How far along each axis a camera may be from the origin of a map, so that all that it may touch
+// lies on the lattice. For params of with_ranges.
+double farthest_camera_m(const OccupancyParams& params);
+
 // As the parameters say, or where they leave it open (0): rays about one voxel apart at the
 // farthest distance that they clear, and surfaces read twice as densely, but not so sparsely that
 // thin things are missed.

@@ -1,6 +1,9 @@
 #include "stereovox/pipeline/build_maps.h"
 
+#include <fmt/format.h>
+
 #include "stereovox/core/error.h"
+#include "stereovox/occupancy/frame_view.h"
 #include "stereovox/odometry/odometry.h"
 #include "stereovox/pipeline/disparity_store.h"
 #include "stereovox/pipeline/map_builder.h"
@@ -15,10 +18,16 @@ constexpr std::int64_t kPoseTolerance_ns = 1'000'000;
 constexpr std::int64_t kMaxPoseGap_ns = 250'000'000;
 
 OdometryResult place_given_at(const Trajectory& poses, std::int64_t stamp_ns,
-                              const SE3& T_left_rectified) {
+                              const SE3& T_left_rectified, double farthest_m) {
   const std::optional<SE3> T_world_left =
       pose_at(poses, stamp_ns, kPoseTolerance_ns, kMaxPoseGap_ns);
   if (!T_world_left) return {.reason = "no pose is given for this time"};
+  const Eigen::Vector3d& p = T_world_left->translation;
+  if (p.cwiseAbs().maxCoeff() > farthest_m)
+    return {.reason =
+                fmt::format("the pose at ({:.4g}, {:.4g}, {:.4g}) m is more than {:.0f} m from the "
+                            "origin, beyond what a map holds",
+                            p.x(), p.y(), p.z(), farthest_m)};
   return {.status = OdometryStatus::tracked, .T_segment_camera = *T_world_left * T_left_rectified};
 }
 
@@ -41,7 +50,8 @@ class Build {
         rectifier_(sequence.rig(), config.rectification),
         frames_(sequence, rectifier_, config),
         odometry_(rectifier_.camera(), odometry_params(config)),
-        builder_(rectifier_.camera(), config, given_poses.has_value(), store_folder) {
+        builder_(rectifier_.camera(), config, given_poses.has_value(), store_folder),
+        farthest_m_(farthest_camera_m(with_ranges(config.occupancy, rectifier_.camera()))) {
     if (config.refine && !given_poses) waiting_.emplace(store_folder);
     result_.camera = rectifier_.camera();
     if (!frames_.warning().empty()) warn(frames_.warning());
@@ -83,7 +93,8 @@ class Build {
     const std::int64_t stamp_ns = frame.pair.stamp_ns;
     Duration odometry;
     const OdometryResult motion = timed(odometry, [&] {
-      return given_poses_ ? place_given_at(*given_poses_, stamp_ns, rectifier_.T_left_rectified())
+      return given_poses_ ? place_given_at(*given_poses_, stamp_ns, rectifier_.T_left_rectified(),
+                                           farthest_m_)
                           : odometry_.track(frame.pair, frame.disparity);
     });
     result_.times.add("rectify", frame.rectify);
@@ -156,6 +167,7 @@ class Build {
   MatchedFrames frames_;
   Odometry odometry_;
   MapBuilder builder_;
+  const double farthest_m_;                // see farthest_camera_m
   std::optional<DisparityStore> waiting_;  // of all tracked frames, in order
   BuildResult result_;
   bool is_lost_ = false;

@@ -95,6 +95,17 @@ TEST(BuildMaps, GivenPosesAreUsedAndFramesWithoutOneAreLost) {
   EXPECT_NEAR(result.segments[0].map.floor_z_m(), 0.0, 0.03);
 }
 
+TEST(BuildMaps, AGivenPoseBeyondWhatAMapHoldsLosesItsFrameAlone) {
+  const PipelineConfig config = config_for(10);
+  const auto sequence = demo(config);
+  Trajectory poses = sequence->truth();
+  poses[5].T_world_camera.translation.x() = 1e6;
+  const BuildResult result = build(*sequence, config, poses);
+  EXPECT_EQ(result.tracked, 9);
+  ASSERT_EQ(result.lost.size(), 1U);
+  EXPECT_TRUE(result.lost[0].reason.starts_with("the pose at (1e+06, ")) << result.lost[0].reason;
+}
+
 TEST(BuildMaps, StopsWhenAskedAndKeepsWhatThereIs) {
   const PipelineConfig config = config_for(12);
   const auto sequence = demo(config);
