@@ -52,16 +52,19 @@ Settings shorthands(const RunOptions& options) {
   return settings;
 }
 
-// As its folder has them; none when it has not.
-std::vector<std::int64_t> stamps_of(const StereoSequence& sequence) {
+std::vector<std::int64_t> stamps_of(const StereoSequence& sequence, const std::string& poses) {
+  const std::filesystem::path times = sequence.info().path / "times.txt";
+  if (!std::filesystem::exists(times))
+    throw Error(poses + ": has no times, and there is no " + times.string());
   std::vector<std::string> ignored;
-  constexpr std::size_t kNone = 0;
-  return read_times(sequence.info().path / "times.txt", kNone, 1.0, ignored);
+  return read_times(times, 0, SequenceParams{}.assumed_rate_hz, ignored);
 }
 
 std::optional<Trajectory> given_poses(const std::string& poses, const StereoSequence& sequence) {
   if (poses.empty()) return std::nullopt;
-  if (poses != "truth") return read_poses(poses, stamps_of(sequence));
+  if (poses != "truth")
+    return holds_kitti_poses(poses) ? read_poses(poses, stamps_of(sequence, poses))
+                                    : read_tum(poses);
   if (sequence.truth().empty())
     throw Error(sequence.info().path.string() + ": has no true poses; --poses takes a file, too");
   return sequence.truth();
@@ -117,7 +120,7 @@ void print_lost(const BuildResult& result) {
         result.segments.size(), result.segments.size());
 }
 
-// The names of the results, and how many folders of further segments there are.
+// The names of the results that are there.
 std::string written_to(const std::filesystem::path& folder) {
   std::string names;
   for (const char* name : {"map.svx", "nav.pgm", "nav.yaml", "nav.png", "trajectory.tum",

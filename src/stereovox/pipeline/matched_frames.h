@@ -24,7 +24,8 @@ struct MatchedFrame {
 };
 
 // Checks the rectification of the first frames before it hands out any: throws Error when they must
-// not be used (rectification_check.h). A dark frame has no disparities. With one thread everything runs in the caller's.
+// not be used (rectification_check.h). A dark frame has no disparities. With one thread everything
+// runs in the caller's.
 class MatchedFrames {
  public:
   MatchedFrames(StereoSequence& sequence, const Rectifier& rectifier, const PipelineConfig& config);

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -26,27 +27,27 @@ constexpr std::array kResults = {
     "map.svx", "nav.yaml",       "report.json", "nav.pgm",
     "nav.png", "trajectory.tum", "config.yaml", "trajectory_kitti.txt"};
 constexpr std::size_t kTelling = 3;
-constexpr const char* kSegmentPrefix = "segment_";
+constexpr std::string_view kSegmentPrefix = "segment_";
 
 std::string text_of(int error_number) { return std::generic_category().message(error_number); }
 
-void make_folder(const fs::path& folder) {
+const fs::path& made(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
     throw ResourceError(folder.string() + ": is a file, not a folder");
   fs::create_directories(folder, error);
   if (error)
     throw ResourceError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  return folder;
 }
 
 std::vector<fs::path> segments_in(const fs::path& folder) {
   std::vector<fs::path> segments;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
-    const bool has_number =
-        name.find_first_not_of("0123456789", std::char_traits<char>::length(kSegmentPrefix)) ==
-        std::string::npos;
-    if (entry.is_directory() && name.starts_with(kSegmentPrefix) && has_number)
+    if (!entry.is_directory() || !name.starts_with(kSegmentPrefix)) continue;
+    const std::string_view number = std::string_view(name).substr(kSegmentPrefix.size());
+    if (number.find_first_not_of("0123456789") == std::string_view::npos && !number.empty())
       segments.push_back(entry.path());
   }
   return segments;
@@ -105,14 +106,25 @@ std::string holder_of(int descriptor) {
 
 }  // namespace
 
+FolderLock::FolderLock(const fs::path& folder)
+    : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (folder_ < 0)
+    throw ResourceError(fmt::format("{}: cannot be opened: {}", folder.string(), text_of(errno)));
+  if (::flock(folder_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  const std::string holder = holder_of(folder_);
+  ::close(folder_);
+  throw ResourceError(
+      fmt::format("{}: process {} is writing its results there", folder.string(), holder));
+}
+
+FolderLock::~FolderLock() { ::close(folder_); }
+
 OutputFolder::OutputFolder(fs::path folder, bool overwrite)
-    : folder_(std::move(folder)), staging_(folder_ / ".stereovox_new") {
-  make_folder(folder_);
+    : folder_(std::move(folder)), staging_(folder_ / ".stereovox_new"), lock_(made(folder_)) {
   if (!overwrite && holds_results())
     throw UsageError(folder_.string() +
                      ": holds the results of a run; give --overwrite to replace them");
   check_writable(folder_);
-  lock();
   std::error_code ignored;
   fs::remove_all(staging_, ignored);  // of a run that was killed
 }
@@ -120,7 +132,6 @@ OutputFolder::OutputFolder(fs::path folder, bool overwrite)
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   fs::remove_all(staging_, ignored);
-  ::close(lock_);
 }
 
 bool OutputFolder::holds_results() const {
@@ -137,19 +148,6 @@ void OutputFolder::publish() {
     throw ResourceError(
         fmt::format("{}: cannot be replaced: {}", folder_.string(), error.code().message()));
   }
-}
-
-// The folder itself is locked, so a killed run leaves nothing. Where that is not possible, there is
-// no lock.
-void OutputFolder::lock() {
-  lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ < 0)
-    throw ResourceError(fmt::format("{}: cannot be opened: {}", folder_.string(), text_of(errno)));
-  if (::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  const std::string holder = holder_of(lock_);
-  ::close(lock_);
-  throw ResourceError(
-      fmt::format("{}: process {} is writing its results there", folder_.string(), holder));
 }
 
 }  // namespace stereovox

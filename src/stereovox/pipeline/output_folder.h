@@ -6,6 +6,19 @@
 
 namespace stereovox {
 
+// As long as it lives no other process has a lock on the folder. A killed process leaves none, and
+// where folders cannot be locked there is none.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);  // throws ResourceError
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int folder_;  // open
+};
+
 class OutputFolder {
  public:
   // Makes sure before the work that its results can be written: makes the folder, and keeps other
@@ -26,10 +39,8 @@ class OutputFolder {
   void publish();
 
  private:
-  void lock();
-
-  std::filesystem::path folder_, staging_;
-  int lock_ = -1;  // the open folder
+  const std::filesystem::path folder_, staging_;
+  const FolderLock lock_;
 };
 
 }  // namespace stereovox
