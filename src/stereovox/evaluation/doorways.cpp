@@ -58,6 +58,18 @@ Side side_of(const DoorPlace& place, const DoorFrame& frame, double diameter_m, 
   return place.across_m < 0.0 ? Side::before : Side::behind;
 }
 
+// Whether any cell of the way that is_open asks for is known.
+bool is_seen(const Doorway& doorway, const OccupancyGrid2D& map, double robot_radius_m) {
+  const DoorFrame frame(doorway);
+  for (int i = 0; i < cell_count(map.geometry); ++i) {
+    const Eigen::Vector2i cell = cell_in(map.geometry, i);
+    if (map.label_at(cell) == CellLabel::unknown) continue;
+    const DoorPlace place = frame.place_of(center_of(map.geometry, cell));
+    if (side_of(place, frame, 2.0 * robot_radius_m, 0.0) != Side::outside) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<Doorway> read_doorways(const std::filesystem::path& path) {
@@ -99,10 +111,12 @@ DoorScore score_doors(const std::vector<Doorway>& doorways, const OccupancyGrid2
   for (const Doorway& doorway : doorways) {
     if (!is_open(doorway, ideal, robot_radius_m)) continue;
     ++score.doors;
-    if (is_open(doorway, generated, robot_radius_m))
+    if (is_open(doorway, generated, robot_radius_m)) {
       ++score.open_doors;
-    else
-      score.closed.push_back(doorway.name);
+      continue;
+    }
+    score.closed.push_back(doorway.name);
+    if (!is_seen(doorway, generated, robot_radius_m)) score.unseen.push_back(doorway.name);
   }
   return score;
 }

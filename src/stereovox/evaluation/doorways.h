@@ -27,6 +27,7 @@ struct DoorScore {
   int doors = 0;                    // open in the ideal map: the others cannot be judged
   int open_doors = 0;               // of them, open in the generated map
   std::vector<std::string> closed;  // names of the rest
+  std::vector<std::string> unseen;  // of these, those about which the map knows nothing
 };
 DoorScore score_doors(const std::vector<Doorway>& doorways, const OccupancyGrid2D& ideal,
                       const OccupancyGrid2D& generated, double robot_radius_m);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace stereovox {
@@ -224,6 +225,7 @@ nlohmann::json to_json(const MapScore& score) {
     json[row.key] = value ? nlohmann::json(*value) : nlohmann::json(nullptr);
   }
   json["doors_closed"] = score.doors ? score.doors->closed : std::vector<std::string>{};
+  json["doors_unseen"] = score.doors ? score.doors->unseen : std::vector<std::string>{};
   return json;
 }
 
@@ -235,7 +237,11 @@ std::string to_text(const MapScore& score) {
       text +=
           fmt::format("{} {:<52}{:>12.6g} {}\n", sign_of(row.better), row.label, *value, row.unit);
   if (score.doors)
-    for (const std::string& name : score.doors->closed) text += "  closed door: " + name + "\n";
+    for (const std::string& name : score.doors->closed) {
+      const bool is_unseen =
+          std::ranges::find(score.doors->unseen, name) != score.doors->unseen.end();
+      text += (is_unseen ? "  door that was not seen: " : "  closed door: ") + name + "\n";
+    }
   return text;
 }
 

@@ -1,6 +1,7 @@
 // The figures of a map's shape: topology and doorways.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "stereovox/core/error.h"
@@ -83,6 +84,11 @@ TEST(Doorways, OnlyThoseThatAreOpenInThePlanAreJudged) {
   EXPECT_EQ(s.doors, 1);
   EXPECT_EQ(s.open_doors, 0);
   EXPECT_EQ(s.closed, std::vector<std::string>{"door"});
+  EXPECT_TRUE(s.unseen.empty());
+  OccupancyGrid2D unknown = wall_with_opening(8);
+  std::ranges::fill(unknown.labels, CellLabel::unknown);
+  EXPECT_EQ(score_doors({kDoor}, wall_with_opening(8), unknown, 0.22).unseen,
+            std::vector<std::string>{"door"});
 }
 
 std::string complaint_about(const std::string& yaml) {
