@@ -21,7 +21,7 @@ void collect(const YAML::Node& node, const std::string& path, const std::string&
   } else if (node.IsMap()) {
     for (const auto& entry : node) {
       const auto name = entry.first.as<std::string>();
-      collect(entry.second, path.empty() ? name : path + "." + name, file, settings);
+      collect(entry.second, path.empty() ? name : fmt::format("{}.{}", path, name), file, settings);
     }
   } else {
     throw Error(fmt::format("{}: '{}' is neither a value nor a section", file, path));
