@@ -235,7 +235,8 @@ TEST(BadInput, AFileThatIsNoMapAndNoCalibrationIsRefused) {
   std::ofstream(bag) << "#ROSBAG V2.0\n";
   const ProgramResult of_bag = run_program("check " + quoted(bag));
   EXPECT_EQ(of_bag.exit_code, 3) << of_bag.output;
-  EXPECT_THAT(of_bag.output, HasSubstr("is a ROS 1 bag, which this program does not read"));
+  EXPECT_THAT(of_bag.output,
+              HasSubstr("is a ROS 1 bag, a data set, a calibration or a map is needed"));
 }
 
 TEST(BadInput, ConversionsOfImagesAreStated) {

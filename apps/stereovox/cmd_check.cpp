@@ -139,7 +139,8 @@ ExitCode run(const CheckOptions& options) {
     return check_source(path, calibration);
   }
   if (const std::string kind = kind_of_file(path); !kind.empty())
-    throw Error(fmt::format("{}: is {}, which this program does not read", path.string(), kind));
+    throw Error(fmt::format("{}: is {}, a data set, a calibration or a map is needed",
+                            path.string(), kind));
   if (is_navigation_map(path)) return check_navigation_map(path);
   print_rig(read_plain_calibration(path));
   return ExitCode::ok;

@@ -120,18 +120,9 @@ void print_lost(const BuildResult& result) {
         result.segments.size(), result.segments.size());
 }
 
-// The names of the results that are there.
-std::string written_to(const std::filesystem::path& folder) {
-  std::string names;
-  for (const char* name : {"map.svx", "nav.pgm", "nav.yaml", "nav.png", "trajectory.tum",
-                           "trajectory_kitti.txt", "report.json", "config.yaml"})
-    if (std::filesystem::exists(folder / name))
-      names += (names.empty() ? "" : " ") + std::string(name);
-  return names;
-}
-
 void print_summary(const RunOptions& options, const StereoSequence& sequence,
-                   const PipelineConfig& config, const BuildResult& result) {
+                   const PipelineConfig& config, const BuildResult& result,
+                   const std::vector<std::string>& results) {
   const MapSegment& main = result.segments.front();
   const MapCounts counts = count_voxels(main.map, config.navmap.threshold);
   std::cout << main.world.source << "\n";
@@ -152,7 +143,7 @@ void print_summary(const RunOptions& options, const StereoSequence& sequence,
       "surfaces are marked up to {:.1f} m away, space is cleared up to {:.1f} m\n",
       ranged.max_depth_m, ranged.max_clearing_m);
   print_stages(result.times);
-  std::cout << "written to " << options.output << ": " << written_to(options.output) << "\n";
+  std::cout << fmt::format("written to {}: {}\n", options.output, fmt::join(results, " "));
 }
 
 ProgressSink sink_for(RunDisplay& display) {
@@ -211,7 +202,7 @@ ExitCode run(const RunOptions& options) {
   if (!result.failure.empty())
     throw ResourceError(result.failure + "; what was mapped before is written to " +
                         options.output);
-  if (talks) print_summary(options, *sequence, config, result);
+  if (talks) print_summary(options, *sequence, config, result, folder.results());
   return exit_code(config, result, folder.path());
 }
 

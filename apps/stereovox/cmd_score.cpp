@@ -61,6 +61,7 @@ Trajectory read_beside(const std::string& path, const std::string& other) {
 }
 
 ExitCode score(const TrajectoryOptions& options) {
+  require_output(options.json, {options.truth, options.estimate});
   TrajectoryScoreParams params;
   apply_settings(parse_settings(options.settings), params);
   params.segment_lengths_m = options.segment_lengths_m;
@@ -70,6 +71,7 @@ ExitCode score(const TrajectoryOptions& options) {
 }
 
 ExitCode score(const DisparityScoreOptions& options) {
+  require_output(options.json, {options.truth, options.estimate, options.mask});
   const DisparityImage truth = read_disparity(options.truth);
   cv::Mat1b counted;
   if (!options.mask.empty()) counted = read_gray_image(options.mask).image.pixels == 255;

@@ -141,6 +141,13 @@ bool OutputFolder::holds_results() const {
   return false;
 }
 
+std::vector<std::string> OutputFolder::results() const {
+  std::vector<std::string> names;
+  for (const char* name : kResults)
+    if (fs::exists(folder_ / name)) names.emplace_back(name);
+  return names;
+}
+
 void OutputFolder::publish() {
   try {
     replace_all(staging_, folder_);

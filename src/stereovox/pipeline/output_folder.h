@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace stereovox {
 
@@ -32,6 +34,7 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return folder_; }
   bool holds_results() const;
+  std::vector<std::string> results() const;  // the names of those that are there
 
   // Where new results are to be written, under the names of outputs.h.
   const std::filesystem::path& staging() const { return staging_; }
