@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -41,6 +42,13 @@ void for_each_on_plain_threads(int begin, int end, int threads,
   if (error) std::rethrow_exception(error);
 }
 
+// Each thread that starts loops keeps its arenas: the workers would first have to leave the last
+// one for a new one, which takes them longer than many a loop.
+tbb::task_arena& arena_of(int threads) {
+  thread_local std::map<int, tbb::task_arena> arenas;
+  return arenas.try_emplace(threads, threads).first->second;
+}
+
 }  // namespace
 
 void parallel_for(int begin, int end, int threads, const std::function<void(int)>& body) {
@@ -50,7 +58,7 @@ void parallel_for(int begin, int end, int threads, const std::function<void(int)
   }
   if (kIsThreadSanitized) return for_each_on_plain_threads(begin, end, threads, body);
   // More than there are cores would make oneTBB print a warning.
-  tbb::task_arena arena(std::min(threads, tbb::info::default_concurrency()));
+  tbb::task_arena& arena = arena_of(std::min(threads, tbb::info::default_concurrency()));
   arena.execute([&] { tbb::parallel_for(begin, end, body); });
 }
 
