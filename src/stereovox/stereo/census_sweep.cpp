@@ -47,8 +47,10 @@ void CensusSweep::next_rows(std::array<WinnerRow, 2>& found) {
   for (SweepRow& row : rows_)
     if (y_ < pair_.height_px) pass_down(row);
   kernels_.along[size_index_](rows_, {found[0].pointers(), found[1].pointers()});
-  for (std::size_t i = 0; i < found.size(); ++i)
+  for (std::size_t i = 0; i < found.size(); ++i) {
     choose_locally(rows_[i].cost, params_.candidates, found[i]);
+    doubt_repetitions(rows_[i].cost, params_.candidates, found[i]);
+  }
 }
 
 void CensusSweep::pass_down(SweepRow& row) {

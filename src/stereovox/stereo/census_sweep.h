@@ -60,8 +60,9 @@ class CensusSweep {
 std::vector<WinnerRow> sweep_reference(const RectifiedPair& pair, const SweepParams& params,
                                        int first_row, int end_row);
 
-// choose_locally, plainly. CostAt(x, candidate) is a cost of that row.
+// choose_locally and doubt_repetitions, plainly. CostAt(x, candidate) is a cost of that row.
 using CostAt = std::function<int(int, int)>;
 void choose_locally_reference(const CostAt& cost, int candidates, WinnerRow& row);
+void doubt_repetitions_reference(const CostAt& cost, int candidates, WinnerRow& row);
 
 }  // namespace stereovox

@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "stereovox/stereo/census_sweep.h"
+#include "stereovox/stereo/row_kernels.h"
 
 namespace stereovox {
 namespace {
@@ -28,8 +29,9 @@ class Reference {
     std::vector<WinnerRow> rows;
     for (int y = first_row_; y < end_row_; ++y) {
       rows.push_back(winners_of(sums[y - first_row_]));
-      choose_locally_reference([&](int x, int c) { return cost(x, y, c); }, params_.candidates,
-                               rows.back());
+      const CostAt of_row = [&](int x, int c) { return cost(x, y, c); };
+      choose_locally_reference(of_row, params_.candidates, rows.back());
+      doubt_repetitions_reference(of_row, params_.candidates, rows.back());
     }
     return rows;
   }
@@ -121,6 +123,15 @@ void choose_locally_reference(const CostAt& cost, int candidates, WinnerRow& row
     row.local[x] = static_cast<std::uint8_t>(local(best));
     row.local_after[x] = static_cast<std::uint8_t>(local(best + 1));
   }
+}
+
+void doubt_repetitions_reference(const CostAt& cost, int candidates, WinnerRow& row) {
+  const int width = static_cast<int>(row.candidate.size());
+  for (int x = 0; x < width; ++x)
+    for (int c = 0; c < candidates; ++c)
+      if (row.local[x] == 0 && std::abs(c - row.candidate[x]) > kChoiceReach &&
+          local_cost(cost, x, c, width, candidates) == 0)
+        row.second[x] = row.cost[x];
 }
 
 std::vector<WinnerRow> sweep_reference(const RectifiedPair& pair, const SweepParams& params,

@@ -205,6 +205,25 @@ TEST_P(CensusMatcher, StripesThatRepeatAreNoSurface) {
   EXPECT_LT(density(match(pair, GetParam())), 0.02);
 }
 
+// Shifted by 21 px, which is no multiple of their periods. At the left border only some of the
+// disparities that fit lie inside the right image.
+TEST_P(CensusMatcher, PatternsThatRepeatAreNoSurface) {
+  constexpr int kShift_px = 21;
+  using Gray = int (*)(int u, int v);
+  for (const Gray gray : {Gray{[](int u, int) { return u % 16 * 12; }},
+                          Gray{[](int u, int v) { return (u / 8 + v / 8) % 2 == 0 ? 60 : 190; }},
+                          Gray{[](int u, int v) { return (u / 16 + v / 16) % 2 == 0 ? 60 : 190; }},
+                          Gray{[](int u, int) { return u / 10 % 2 == 0 ? 70 : 180; }},
+                          Gray{[](int u, int) { return 60 + u / 4; }}}) {
+    RectifiedPair pair =
+        pair_of([&](int u, int v) { return static_cast<std::uint8_t>(gray(u, v)); });
+    pair.right = pair_of([&](int u, int v) {
+                   return static_cast<std::uint8_t>(gray(u + kShift_px, v));
+                 }).left;
+    EXPECT_LT(density(match(pair, GetParam())), 0.15) << gray(50, 50) << ' ' << gray(60, 50);
+  }
+}
+
 TEST_P(CensusMatcher, ACameraThatIsHalfAsBrightFindsTheSamePlane) {
   RectifiedPair pair = synthetic_pair(kSize, slanted);
   pair.right.pixels *= 0.5;

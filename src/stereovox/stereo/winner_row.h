@@ -26,4 +26,9 @@ struct WinnerRow {
 // be read.
 void choose_locally(const std::uint8_t* cost, int candidates, WinnerRow& row);
 
+// Where a winner costs nothing, and a candidate farther than kChoiceReach from it costs nothing
+// either, images without noise repeat or show nothing; paths then decide by what they met at the
+// border. There the second best becomes as good as the best. After choose_locally.
+void doubt_repetitions(const std::uint8_t* cost, int candidates, WinnerRow& row);
+
 }  // namespace stereovox

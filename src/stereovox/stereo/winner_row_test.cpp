@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "stereovox/stereo/census_sweep.h"
+#include "stereovox/stereo/row_kernels.h"
 
 namespace stereovox {
 namespace {
@@ -35,6 +37,43 @@ TEST(WinnerRow, ChoosesAsThePlainVersionDoes) {
                                plain);
       EXPECT_EQ(row, plain) << width << " x " << candidates;
     }
+}
+
+TEST(WinnerRow, DoubtsAsThePlainVersionDoes) {
+  std::mt19937 random(6);
+  for (const int candidates : {32, 64, 256})
+    for (const int width : {1, 2, 3, 4, 5, 6, 40}) {
+      std::vector<std::uint8_t> cost(width * candidates + kRowSlack, 255);
+      for (int i = 0; i < width * candidates; ++i)
+        cost[i] =
+            static_cast<std::uint8_t>(random() % 8 == 0 ? 1 + random() % kMaxMatchingCost : 0);
+      WinnerRow row = random_winners(width, candidates, random);
+      std::ranges::fill(row.second, std::uint8_t{9});
+      choose_locally(cost.data(), candidates, row);
+      WinnerRow plain = row;
+      doubt_repetitions(cost.data(), candidates, row);
+      doubt_repetitions_reference([&](int x, int c) { return cost[x * candidates + c]; },
+                                  candidates, plain);
+      EXPECT_EQ(row, plain) << width << " x " << candidates;
+    }
+}
+
+TEST(WinnerRow, DoubtsWhatIsFreeElsewhereButNotBesideTheWinner) {
+  constexpr int kWidth_px = 9, kCandidates = 32, kWinner = 10;
+  const auto second_with_free = [](int candidate) {
+    std::vector<std::uint8_t> cost(kWidth_px * kCandidates + kRowSlack, 3);
+    for (int x = 0; x < kWidth_px; ++x)
+      cost[x * kCandidates + kWinner] = cost[x * kCandidates + candidate] = 0;
+    WinnerRow row(kWidth_px);
+    std::ranges::fill(row.candidate, std::uint8_t{kWinner});
+    std::ranges::fill(row.second, std::uint8_t{9});
+    doubt_repetitions(cost.data(), kCandidates, row);
+    return row.second[4];
+  };
+  EXPECT_EQ(second_with_free(kWinner), 9);
+  EXPECT_EQ(second_with_free(kWinner + kChoiceReach), 9);
+  EXPECT_EQ(second_with_free(kWinner + kChoiceReach + 1), 0);
+  EXPECT_EQ(second_with_free(0), 0);
 }
 
 }  // namespace
