@@ -7,6 +7,7 @@
 #include "stereovox/core/parallel.h"
 #include "stereovox/stereo/census_sweep.h"
 #include "stereovox/stereo/judge_matches.h"
+#include "stereovox/stereo/repetition.h"
 #include "stereovox/stereo/smooth_disparities.h"
 
 namespace stereovox {
@@ -45,6 +46,13 @@ SweepParams sweep_params(const CensusSgmParams& p) {
   return sweep;
 }
 
+// Their best candidate is no better than the second one.
+void doubt(const std::vector<PixelSpan>& repeating, int first_row, int end_row,
+           MatchFeatures& features) {
+  for (const PixelSpan& span : repeating)
+    features.log_ratio.rowRange(first_row, end_row).colRange(span.begin, span.end).setTo(0);
+}
+
 void sweep_stripe(const CensusPair& pair, const SweepParams& params, int first_row, int end_row,
                   MatchFeatures& features) {
   const int warm_up_row = std::max(0, first_row - kWarmUpRows);
@@ -52,9 +60,16 @@ void sweep_stripe(const CensusPair& pair, const SweepParams& params, int first_r
   for (int v = warm_up_row; v < first_row; ++v) sweep.skip_row();
   std::array<WinnerRow, 2> winners = {WinnerRow(pair.width_px), WinnerRow(pair.width_px)};
   FeatureRows rows(pair.width_px, params.min_disparity_px, params.max_disparity_px());
-  for (int v = first_row; v < end_row; v += 2) {
-    sweep.next_rows(winners);
-    for (int i = 0; i < std::min(2, end_row - v); ++i) rows.fill(winners[i], v + i, features);
+  RepetitionBand band(pair.width_px, params.candidates);
+  for (int begin = first_row; begin < end_row; begin += RepetitionBand::kBlockHeight_px) {
+    const int end = std::min(begin + RepetitionBand::kBlockHeight_px, end_row);
+    for (int v = begin; v < end; v += 2) {
+      sweep.next_rows(winners);
+      if ((v - begin) % RepetitionBand::kRowStep_px == 0)
+        band.add_row(sweep.costs(), winners[0].candidate.data());
+      for (int i = 0; i < std::min(2, end - v); ++i) rows.fill(winners[i], v + i, features);
+    }
+    doubt(band.take_repeating(), begin, end, features);
   }
 }
 

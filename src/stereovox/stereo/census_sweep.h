@@ -37,6 +37,8 @@ class CensusSweep {
   // Of this row and the one below, both as wide as the images. Below the last row there is none:
   // what is written of it means nothing.
   void next_rows(std::array<WinnerRow, 2>& found);
+  // Width x candidates: of the first of these rows.
+  const std::uint8_t* costs() const { return rows_[0].cost; }
 
  private:
   void give_memory(std::size_t row);

@@ -84,6 +84,10 @@ struct RowKernels {
                                std::int16_t* out);
   // How far disparities are from that of the owner of either right pixel that they end between.
   using LeftRight = void (*)(const OwnedRow& row, int width_px, std::uint8_t* out);
+  // Adds the costs of every `step`th of the pixels, candidate c of each at candidates + c - winner.
+  using AlongSurface = void (*)(const std::uint8_t* cost, int candidates,
+                                const std::uint8_t* winner, int width_px, int step,
+                                std::uint16_t* sum);
   using SortColumns = void (*)(const std::int16_t* above, const std::int16_t* here,
                                const std::int16_t* below, int width_px, const SortedRows& out);
   using Medians = void (*)(const SortedRows& rows, int width_px, std::int16_t* out);
@@ -107,6 +111,7 @@ struct RowKernels {
   Choose choose = nullptr;
   Disparities disparities = nullptr;
   LeftRight left_right = nullptr;
+  AlongSurface along_surface = nullptr;
   SortColumns sort_columns = nullptr;
   Medians medians = nullptr;
   Means means = nullptr;

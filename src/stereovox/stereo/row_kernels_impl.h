@@ -2,6 +2,8 @@
 // compiler makes vectors of them.
 #pragma once
 
+#include <cstddef>
+
 #include "stereovox/stereo/row_kernels.h"
 
 // Each including file is to have its own: NOLINTBEGIN(misc-definitions-in-headers)
@@ -69,6 +71,16 @@ void fill_left_right(const OwnedRow& row, int width_px, std::uint8_t* __restrict
     const std::uint32_t pair = r.owners[u + candidate - static_cast<int>(here > whole)];
     const int smallest = smaller(difference(here, pair), difference(here, pair >> kDisparityBits));
     out[u] = static_cast<std::uint8_t>(smaller(smallest, r.max_difference));
+  }
+}
+
+void add_along_surface(const std::uint8_t* cost, int candidates, const std::uint8_t* winner,
+                       int width_px, int step, std::uint16_t* sum) {
+  for (int x = 0; x < width_px; x += step) {
+    const std::uint8_t* const from = cost + static_cast<std::ptrdiff_t>(x) * candidates;
+    std::uint16_t* const to = sum + candidates - winner[x];
+#pragma GCC ivdep
+    for (int c = 0; c < candidates; ++c) to[c] = static_cast<std::uint16_t>(to[c] + from[c]);
   }
 }
 
@@ -308,6 +320,7 @@ void keep_seen(int width_px, Step* __restrict passed) {
 constexpr RowKernels kRowKernels = {.choose = choose_winners,
                                     .disparities = fill_disparities,
                                     .left_right = fill_left_right,
+                                    .along_surface = add_along_surface,
                                     .sort_columns = sort_columns,
                                     .medians = fill_medians,
                                     .means = fill_means,

@@ -45,6 +45,11 @@ std::vector<double> results(const RowKernels& kernels, int width) {
                       .max_disparity_px = 300,
                       .max_difference = 128},
                      width, left_right.data());
+  constexpr int kCandidates = 32;
+  const auto costs = random_row<std::uint8_t>(width * kCandidates, 10, 0, 255);
+  const auto winners = random_row<std::uint8_t>(width, 11, 0, kCandidates - 1);
+  std::vector<std::uint16_t> along(2 * kCandidates);
+  kernels.along_surface(costs.data(), kCandidates, winners.data(), width, 3, along.data());
   std::array<std::vector<std::int16_t>, kSmoothMembers> rows;
   std::array<const std::int16_t*, kSmoothMembers> members = {};
   for (unsigned i = 0; i < rows.size(); ++i) {
@@ -103,6 +108,7 @@ std::vector<double> results(const RowKernels& kernels, int width) {
   const auto append = [&](const auto& row) { all.insert(all.end(), row.begin(), row.end()); };
   append(disparity);
   append(left_right);
+  append(along);
   append(median);
   append(mean);
   append(settled);
