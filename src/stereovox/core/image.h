@@ -25,4 +25,9 @@ struct DisparityImage {
   int height() const { return disparity_px.rows; }
 };
 
+// An image in which no pixel has a disparity.
+inline DisparityImage empty_disparities(cv::Size size) {
+  return {cv::Mat1f(size, 0.0F), cv::Mat1f(size, 0.0F), cv::Mat1f(size, 0.0F)};
+}
+
 }  // namespace stereovox

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "stereovox/core/error.h"
 #include "stereovox/occupancy/frame_view.h"
 #include "stereovox/odometry/odometry.h"
@@ -29,6 +31,13 @@ OdometryResult place_given_at(const Trajectory& poses, std::int64_t stamp_ns,
                             "origin, beyond what a map holds",
                             p.x(), p.y(), p.z(), farthest_m)};
   return {.status = OdometryStatus::tracked, .T_segment_camera = *T_world_left * T_left_rectified};
+}
+
+bool are_equal(const cv::Mat1b& a, const cv::Mat1b& b) {
+  if (a.size() != b.size()) return false;
+  for (int v = 0; v < a.rows; ++v)
+    if (!std::equal(a[v], a[v] + a.cols, b[v])) return false;
+  return true;
 }
 
 OdometryParams odometry_params(const PipelineConfig& config) {
@@ -71,6 +80,9 @@ class Build {
     const std::size_t warned = result_.warnings.size();
     result_.segments = builder_.finish(result_.times, result_.warnings);
     for (std::size_t i = warned; i < result_.warnings.size(); ++i) sink_.warn(result_.warnings[i]);
+    if (result_.repeated > 0)
+      warn(fmt::format("{} of {} frames show the same images as the one before: mapped once",
+                       result_.repeated, result_.frames));
     result_.wall_s = watch_.elapsed().wall_ms / 1e3;
     return std::move(result_);
   }
@@ -100,11 +112,16 @@ class Build {
     result_.times.add("rectify", frame.rectify);
     result_.times.add("disparity", frame.match);
     result_.times.add("odometry", odometry);
+    const bool is_repeated = repeats_the_last(frame.pair);
     Progress progress{.frame = ++result_.frames, .frames = sequence_.info().pairs};
     progress.is_tracked = motion.status == OdometryStatus::tracked;
     progress.inliers = motion.inliers;
     progress.match_ms = frame.match.wall_ms;
     progress.odometry_ms = odometry.wall_ms;
+    if (progress.is_tracked && is_repeated) {
+      ++result_.repeated;
+      frame.disparity = empty_disparities(frame.pair.left.pixels.size());
+    }
     if (progress.is_tracked)
       keep({stamp_ns, std::move(frame.disparity), motion.segment, motion.T_segment_camera},
            progress);
@@ -112,6 +129,15 @@ class Build {
       note_lost(stamp_ns, motion.reason);
     progress.elapsed_s = watch_.elapsed().wall_ms / 1e3;
     sink_.frame_done(progress);
+  }
+
+  // A picture that comes twice, as of a camera that hangs, is one observation.
+  bool repeats_the_last(const RectifiedPair& pair) {
+    const bool repeats =
+        are_equal(pair.left.pixels, last_left_) && are_equal(pair.right.pixels, last_right_);
+    last_left_ = pair.left.pixels;
+    last_right_ = pair.right.pixels;
+    return repeats;
   }
 
   void keep(LocatedFrame frame, Progress& progress) {
@@ -170,6 +196,7 @@ class Build {
   const double farthest_m_;                // see farthest_camera_m
   std::optional<DisparityStore> waiting_;  // of all tracked frames, in order
   BuildResult result_;
+  cv::Mat1b last_left_, last_right_;
   bool is_lost_ = false;
 };
 

@@ -44,6 +44,7 @@ struct BuildResult {
   RectifiedCamera camera;
   StageTimes times;
   int frames = 0, tracked = 0;
+  int repeated = 0;  // frames with the images of the one before: they have a pose but tell nothing
   double wall_s = 0.0;
   bool was_stopped = false;
   std::string failure;  // why the map could not grow on: the disk or the memory; empty: it could

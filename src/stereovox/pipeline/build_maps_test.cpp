@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "stereovox/core/error.h"
@@ -47,6 +48,29 @@ class Blinking : public StereoSequence {
   std::set<int> dark_;
 };
 
+// The demo drive from a camera that hangs: from its third frame on it shows that one again.
+class Hanging : public StereoSequence {
+ public:
+  explicit Hanging(std::unique_ptr<StereoSequence> sequence) : sequence_(std::move(sequence)) {}
+  const StereoRig& rig() const override { return sequence_->rig(); }
+  const SequenceInfo& info() const override { return sequence_->info(); }
+  const Trajectory& truth() const override { return sequence_->truth(); }
+  std::span<const SkippedPair> skipped() const override { return sequence_->skipped(); }
+  std::optional<StereoFrame> next() override {
+    std::optional<StereoFrame> frame = sequence_->next();
+    if (!frame) return frame;
+    if (last_ && last_->index >= 2) {
+      frame->left.pixels = last_->left.pixels.clone();
+      frame->right.pixels = last_->right.pixels.clone();
+    }
+    return last_ = frame;
+  }
+
+ private:
+  std::unique_ptr<StereoSequence> sequence_;
+  std::optional<StereoFrame> last_;
+};
+
 BuildResult build(StereoSequence& sequence, const PipelineConfig& config,
                   const std::optional<Trajectory>& poses = std::nullopt) {
   return build_maps(sequence, config, poses, ProgressSink{});
@@ -78,6 +102,21 @@ TEST(BuildMaps, ALostFrameIsReportedWithItsTimeAndTouchesNoMap) {
   EXPECT_FALSE(result.lost[0].reason.empty());
   EXPECT_EQ(result.segments[0].map.frames_integrated, 10U)
       << "found back by recognising a keyframe";
+}
+
+TEST(BuildMaps, PicturesThatComeTwiceAreMappedOnce) {
+  const PipelineConfig config = config_for(6);
+  Hanging sequence(demo(config));
+  const BuildResult hung = build(sequence, config);
+  EXPECT_EQ(hung.tracked, 6);
+  EXPECT_EQ(hung.repeated, 3);
+  ASSERT_EQ(hung.warnings.size(), 1U);
+  EXPECT_EQ(hung.warnings[0], "3 of 6 frames show the same images as the one before: mapped once");
+  int most = 0;
+  hung.segments[0].map.for_each_block([&](const VoxelBlock& block) {
+    for (const Voxel voxel : block.voxels) most = std::max<int>(most, voxel.observations);
+  });
+  EXPECT_EQ(most, 3);
 }
 
 TEST(BuildMaps, GivenPosesAreUsedAndFramesWithoutOneAreLost) {

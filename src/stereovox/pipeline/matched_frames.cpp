@@ -36,9 +36,7 @@ bool is_dark(const RectifiedPair& pair) {
 
 DisparityImage match_or_nothing(const RectifiedPair& pair, const MatcherParams& matcher,
                                 int threads) {
-  if (!is_dark(pair)) return match(pair, matcher, threads);
-  const cv::Size size = pair.left.pixels.size();
-  return {cv::Mat1f::zeros(size), cv::Mat1f::zeros(size), cv::Mat1f::zeros(size)};
+  return is_dark(pair) ? empty_disparities(pair.left.pixels.size()) : match(pair, matcher, threads);
 }
 
 }  // namespace

@@ -99,6 +99,7 @@ ordered_json report(const StereoSequence& sequence, const PipelineConfig& config
           {"camera", camera_json(result.camera)},
           {"frames", result.frames},
           {"tracked", result.tracked},
+          {"repeated", result.repeated},
           {"lost_segments", lost_json(result.lost)},
           {"segments", segments_json(result.segments)},
           {"skipped", skipped_json(sequence.skipped())},
