@@ -225,6 +225,26 @@ TEST(Navmap, HeightsOfWhichNothingIsKnownAreUnknownAndSaid) {
   EXPECT_THAT(result.output, HasSubstr("nothing was seen often enough from 5 to 6 m"));
 }
 
+TEST(Program, ChecksCalibrationsOfOtherForms) {
+  const fs::path file = empty_folder("kalibr") / "camchain.yaml";
+  const auto check = [&](const std::string& baseline_m) {
+    const std::string camera =
+        ":\n  camera_model: pinhole\n  intrinsics: [450, 450, 320, 240]\n"
+        "  distortion_model: radtan\n  distortion_coeffs: [0.1, 0, 0, 0]\n"
+        "  resolution: [640, 480]\n";
+    std::ofstream(file) << "cam0" << camera << "cam1" << camera << "  T_cn_cnm1: [[1, 0, 0, -"
+                        << baseline_m << "], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n";
+    return run_program("check " + quoted(file));
+  };
+  const ProgramResult good = check("0.12");
+  EXPECT_EQ(good.exit_code, 0) << good.output;
+  EXPECT_THAT(good.output,
+              HasSubstr("calibration ok: 640 x 480, fx 450.000 px, baseline 0.1200 m"));
+  const ProgramResult in_mm = check("120");
+  EXPECT_EQ(in_mm.exit_code, 3);
+  EXPECT_THAT(in_mm.output, HasSubstr("is it in millimetres?"));
+}
+
 TEST(BadInput, AFileThatIsNoMapAndNoCalibrationIsRefused) {
   const fs::path file = empty_folder("data") / "words.yaml";
   std::ofstream(file) << "just words\n";

@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "command.h"
-#include "stereovox/dataset/calibration.h"
+#include "stereovox/dataset/calibration_file.h"
 #include "stereovox/io/file_kind.h"
 #include "stereovox/io/yaml_file.h"
 #include "stereovox/navmap/read_map_server.h"
@@ -123,6 +123,17 @@ ExitCode check_navigation_map(const fs::path& path) {
   return ExitCode::ok;
 }
 
+ExitCode check_calibration(const fs::path& path) {
+  const StereoRig rig = read_calibration(path, [&]() -> cv::Size {
+    throw Error(path.string() +
+                ": does not say how large the images are; check it with them: "
+                "stereovox check SOURCE --calib FILE");
+  });
+  validate(rig, path.string());
+  print_rig(rig);
+  return ExitCode::ok;
+}
+
 bool is_navigation_map(const fs::path& path) {
   if (path.extension() != ".yaml") return false;
   const YAML::Node root = load_yaml(path);
@@ -142,8 +153,7 @@ ExitCode run(const CheckOptions& options) {
     throw Error(fmt::format("{}: is {}, a data set, a calibration or a map is needed",
                             path.string(), kind));
   if (is_navigation_map(path)) return check_navigation_map(path);
-  print_rig(read_plain_calibration(path));
-  return ExitCode::ok;
+  return check_calibration(path);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "command.h"
-#include "stereovox/dataset/calibration.h"
+#include "stereovox/dataset/calibration_file.h"
 #include "stereovox/io/disparity_file.h"
 #include "stereovox/io/image_file.h"
 #include "stereovox/io/pfm.h"
@@ -42,7 +42,8 @@ RectifiedPair rectified_pair(const DisparityOptions& options, const Rectificatio
   const GrayImage right = with_warning(options.right, loaded.right);
   check_size(options.right, right, left.width(), left.height(), "the left image");
   if (options.calibration.empty()) return {0, left, right, {}, {}};
-  const StereoRig rig = read_plain_calibration(options.calibration);
+  const StereoRig rig = read_calibration(options.calibration, [&] { return left.pixels.size(); });
+  validate(rig, options.calibration);
   check_size(options.left, left, rig.left.pinhole.width, rig.left.pinhole.height,
              "the calibration");
   return Rectifier(rig, params).rectify({0, 0, options.left, left, right});
@@ -88,7 +89,7 @@ void add_disparity(CLI::App& program, Action& action) {
   command->add_option("RIGHT", options->right)->required();
   command
       ->add_option("--calib", options->calibration,
-                   "calibration; without it the images are rectified")
+                   "calibration (forms as for run); without it the images are rectified")
       ->type_name("FILE");
   options->config.add_to(*command);
   command->add_option("-o,--output", options->output, ".pfm, or .png in KITTI's form (16 bit)")

@@ -44,7 +44,10 @@ void SourceOptions::add_to(CLI::App& command) {
                   "folder of a data set (plain, KITTI odometry or EuRoC/ASL), or "
                   "sim:WORLD.yaml[:DRIVE[:SEED]]")
       ->required();
-  command.add_option("--calib", calibration, "calibration to use instead of the data set's")
+  command
+      .add_option("--calib", calibration,
+                  "calibration to use instead of the data set's: plain, Kalibr, ROS, OpenCV, "
+                  "KITTI or EuRoC/ASL, a file or its folder")
       ->type_name("FILE");
   command.add_option("--start", start_s, "skip this much")->type_name("SECONDS");
   command.add_option("--duration", duration_s, "use only this much")->type_name("SECONDS");

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "stereovox/core/error.h"
+#include "stereovox/dataset/calibration_parts.h"
 #include "stereovox/io/text_file.h"
 #include "stereovox/io/yaml_file.h"
 
@@ -47,53 +48,75 @@ Eigen::Vector3d offset_from_camera_0(const Projection& P) {
   return {(P[3] - P[2] * P[11]) / P[0], (P[7] - P[6] * P[11]) / P[5], P[11]};
 }
 
-DistortionModel distortion_model(const YAML::Node& sensor, const std::string& source) {
-  const std::string name = yaml_text(sensor, "distortion_model", source);
-  if (name == "radial-tangential" || name == "radtan" || name == "plumb_bob")
-    return DistortionModel::radial_tangential;
+bool has_no_distortion(const CameraCalibration& camera) {
+  return camera.distortion_model != DistortionModel::equidistant &&
+         std::ranges::all_of(camera.distortion, [](double k) { return k == 0.0; });
+}
+
+Eigen::Quaterniond rotation_of(const Eigen::Matrix3d& matrix, const std::string& key,
+                               const std::string& source) {
+  const NearestRotation nearest = nearest_rotation(matrix);
+  if (nearest.residual > kRotationTolerance)
+    throw Error(fmt::format("{}: the rotation in '{}' is none (R R^T differs from I by {:.3g})",
+                            source, key, nearest.residual));
+  return nearest.rotation;
+}
+
+}  // namespace
+
+DistortionModel distortion_model_of(const std::string& name, const std::string& source) {
+  for (const char* const known :
+       {"radial-tangential", "radtan", "plumb_bob", "rational_polynomial"})
+    if (name == known) return DistortionModel::radial_tangential;
   if (name == "equidistant") return DistortionModel::equidistant;
   if (name == "none") return DistortionModel::none;
   throw Error(fmt::format("{}: distortion model {} is none of radial-tangential, equidistant, none",
                           source, in_quotes(name)));
 }
 
-CameraCalibration asl_calibration(const YAML::Node& sensor, const std::string& source) {
-  const std::string model = yaml_text(sensor, "camera_model", source);
+CameraCalibration pinhole_calibration(const YAML::Node& camera, const std::string& coefficients_key,
+                                      const std::string& source) {
+  const std::string model = yaml_text(camera, "camera_model", source);
   if (model != "pinhole")
     throw Error(fmt::format("{}: camera model {} is not 'pinhole'", source, in_quotes(model)));
-  const std::vector<double> size = yaml_numbers(sensor, "resolution", 2, source);
-  const std::vector<double> k = yaml_numbers(sensor, "intrinsics", 4, source);
-  CameraCalibration camera;
-  camera.pinhole = {static_cast<int>(std::clamp(size[0], -1.0, 1e9)),
-                    static_cast<int>(std::clamp(size[1], -1.0, 1e9)),
-                    k[0],
-                    k[1],
-                    k[2],
-                    k[3]};
-  if (!sensor["distortion_model"]) return camera;
-  camera.distortion_model = distortion_model(sensor, source);
-  if (camera.distortion_model != DistortionModel::none)
-    camera.distortion = yaml_numbers(sensor, "distortion_coefficients", source);
-  return camera;
+  const std::vector<double> size = yaml_numbers(camera, "resolution", 2, source);
+  const std::vector<double> k = yaml_numbers(camera, "intrinsics", 4, source);
+  CameraCalibration calibration;
+  calibration.pinhole = {static_cast<int>(std::clamp(size[0], -1.0, 1e9)),
+                         static_cast<int>(std::clamp(size[1], -1.0, 1e9)),
+                         k[0],
+                         k[1],
+                         k[2],
+                         k[3]};
+  if (!camera["distortion_model"]) return calibration;
+  calibration.distortion_model =
+      distortion_model_of(yaml_text(camera, "distortion_model", source), source);
+  if (calibration.distortion_model != DistortionModel::none)
+    calibration.distortion = yaml_numbers(camera, coefficients_key, source);
+  return calibration;
 }
 
-SE3 rigid_motion(const YAML::Node& sensor, const std::string& key, const std::string& source) {
-  const YAML::Node value = yaml_value(sensor, key, source);
-  const std::vector<double> m = value.IsMap() ? yaml_numbers(value, "data", 16, source)
-                                              : yaml_numbers(sensor, key, 16, source);
+std::vector<double> yaml_matrix(const YAML::Node& map, const std::string& key, std::size_t count,
+                                const std::string& source) {
+  const YAML::Node value = yaml_value(map, key, source);
+  return value.IsMap() ? yaml_numbers(value, "data", count, source)
+                       : yaml_numbers(map, key, count, source);
+}
+
+Eigen::Quaterniond yaml_rotation(const YAML::Node& map, const std::string& key,
+                                 const std::string& source) {
+  const std::vector<double> m = yaml_matrix(map, key, 9, source);
+  return rotation_of(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.data()), key,
+                     source);
+}
+
+SE3 yaml_rigid_motion(const YAML::Node& map, const std::string& key, const std::string& source) {
+  const std::vector<double> m = yaml_matrix(map, key, 16, source);
   const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> T(m.data());
-  const NearestRotation nearest = nearest_rotation(T.topLeftCorner<3, 3>());
-  if (nearest.residual > kRotationTolerance)
-    throw Error(fmt::format("{}: the rotation in '{}' is none (R R^T differs from I by {:.3g})",
-                            source, key, nearest.residual));
+  const SE3 motion{rotation_of(T.topLeftCorner<3, 3>(), key, source), T.topRightCorner<3, 1>()};
   if (!T.row(3).isApprox(Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)))
     throw Error(fmt::format("{}: the last row of '{}' is not 0 0 0 1", source, key));
-  return {nearest.rotation, T.topRightCorner<3, 1>()};
-}
-
-bool has_no_distortion(const CameraCalibration& camera) {
-  return camera.distortion_model != DistortionModel::equidistant &&
-         std::ranges::all_of(camera.distortion, [](double k) { return k == 0.0; });
+  return motion;
 }
 
 bool is_rectified(const StereoRig& rig) {
@@ -104,8 +127,6 @@ bool is_rectified(const StereoRig& rig) {
          rotation_angle_rad(T) < kRectifiedTolerance_rad &&
          T.translation.tail<2>().norm() < kRectifiedTolerance_m;
 }
-
-}  // namespace
 
 StereoRig read_plain_calibration(const std::filesystem::path& path) {
   const YAML::Node calibration = load_yaml(path);
@@ -149,7 +170,8 @@ KittiCalibration read_kitti_calibration(const std::filesystem::path& path, int l
 AslCamera read_asl_camera(const std::filesystem::path& sensor_yaml) {
   const YAML::Node sensor = load_yaml(sensor_yaml);
   const std::string source = sensor_yaml.string();
-  return {asl_calibration(sensor, source), rigid_motion(sensor, "T_BS", source)};
+  return {pinhole_calibration(sensor, "distortion_coefficients", source),
+          yaml_rigid_motion(sensor, "T_BS", source)};
 }
 
 StereoRig stereo_rig(const AslCamera& left, const AslCamera& right) {

@@ -26,18 +26,10 @@ int left_camera(const fs::path& folder) {
   return has_grey || !has_colour ? 0 : 2;
 }
 
-// calib.txt holds no image size; the first left image that can be read tells it.
+// calib.txt holds none.
 cv::Size image_size(const fs::path& folder) {
   const fs::path left = image_folder(folder, left_camera(folder));
-  std::string first_reason = left.string() + ": no left images";
-  bool is_first = true;
-  for (const fs::path& image : images_in(left)) try {
-      return read_image_size(image);
-    } catch (const Error& error) {
-      if (is_first) first_reason = error.what();
-      is_first = false;
-    }
-  throw Error(first_reason);
+  return first_size_of(images_in(left), left);
 }
 
 KittiCalibration calibration_of(const fs::path& folder) {

@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "stereovox/core/error.h"
-#include "stereovox/dataset/calibration.h"
+#include "stereovox/dataset/calibration_file.h"
 #include "stereovox/dataset/euroc_layout.h"
 #include "stereovox/dataset/folder_sequence.h"
 #include "stereovox/dataset/kitti_layout.h"
+#include "stereovox/dataset/pairing.h"
 #include "stereovox/dataset/plain_layout.h"
 #include "stereovox/io/file_kind.h"
 
@@ -56,7 +57,13 @@ std::unique_ptr<StereoSequence> open_folder(const fs::path& source, const Sequen
   SequenceListing listing = layout.list(source, params);
   listing.info.layout = layout.name;
   listing.info.path = source;
-  const StereoRig rig = calibration ? read_plain_calibration(*calibration) : layout.rig(source);
+  const auto image_size = [&] {
+    std::vector<fs::path> left;
+    for (const ListedPair& pair : listing.pairs) left.push_back(pair.left);
+    return first_size_of(left, source);
+  };
+  const StereoRig rig =
+      calibration ? read_calibration(*calibration, image_size) : layout.rig(source);
   validate(rig, (calibration ? *calibration : source / layout.calibration).string());
   return make_folder_sequence(std::move(listing), rig, params);
 }

@@ -174,6 +174,16 @@ Paths images_in(const fs::path& folder) {
   return images;
 }
 
+cv::Size first_size_of(const Paths& images, const fs::path& folder) {
+  std::string first_reason = folder.string() + ": no left images";
+  for (const fs::path& image : images) try {
+      return read_image_size(image);
+    } catch (const Error& error) {
+      if (image == images.front()) first_reason = error.what();
+    }
+  throw Error(first_reason);
+}
+
 void expect_images(const Paths& images, const fs::path& folder, const std::string& side) {
   if (images.empty())
     throw Error(fmt::format("{}: no {} images (PNG, PGM, JPEG, BMP, TIFF)", folder.string(), side));

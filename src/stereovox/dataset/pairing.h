@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <opencv2/core/types.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,11 @@ namespace stereovox {
 // The image files directly in a folder (hidden files and other kinds are ignored): first those
 // named by a number, in its order, then the rest by name. A folder that is missing has none.
 std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder);
+
+// Of the first of them that can be read. Throws what the first one said when none can, or that the
+// folder has no images.
+cv::Size first_size_of(const std::vector<std::filesystem::path>& images,
+                       const std::filesystem::path& folder);
 
 // Pairs images of the same name (without extension). `times_ns` has one stamp for each left image,
 // or, when images were lost, for each image of either side or each number from 0 (or 1) on;

@@ -1,6 +1,6 @@
 #include "stereovox/dataset/plain_layout.h"
 
-#include "stereovox/dataset/calibration.h"
+#include "stereovox/dataset/calibration_file.h"
 #include "stereovox/dataset/pairing.h"
 #include "stereovox/io/trajectory_file.h"
 
@@ -13,7 +13,9 @@ bool is_plain_layout(const fs::path& folder) {
 }
 
 StereoRig plain_rig(const fs::path& folder) {
-  return read_plain_calibration(folder / "calib.yaml");
+  return read_calibration(folder / "calib.yaml", [&] {
+    return first_size_of(images_in(folder / "left"), folder / "left");
+  });
 }
 
 SequenceListing list_plain_layout(const fs::path& folder, const SequenceParams& params) {

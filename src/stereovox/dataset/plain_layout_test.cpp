@@ -47,6 +47,17 @@ TEST_F(PlainLayout, DeliversItsPairsWithTimesAndTruth) {
   EXPECT_TRUE(sequence->info().remarks.empty());
 }
 
+TEST_F(PlainLayout, TakesACalibrationOfAnotherFormUnderItsName) {
+  folder_.write("calib.yaml",
+                "M1: [30, 0, 15, 0, 30, 9, 0, 0, 1]\nD1: [0.1, 0, 0, 0]\n"
+                "M2: [30, 0, 15, 0, 30, 9, 0, 0, 1]\nD2: [0, 0, 0, 0, 0]\n"
+                "R: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [-0.12, 0, 0]\n");
+  const auto sequence = open();
+  EXPECT_EQ(sequence->rig().left.pinhole.width, 32);
+  EXPECT_EQ(sequence->rig().left.distortion.size(), 4U);
+  EXPECT_FALSE(sequence->rig().is_rectified);
+}
+
 TEST_F(PlainLayout, DropsImagesWithoutAPartnerAndKeepsTheTimesOfTheRest) {
   fs::remove(left(3));
   fs::remove(right(5));
