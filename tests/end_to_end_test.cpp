@@ -222,12 +222,14 @@ TEST(EndToEnd, InfoAndCheckTellAboutEverythingARunMakes) {
     EXPECT_EQ(info.exit_code, 0) << info.output;
     EXPECT_GT(info.output.size(), 50U);
   }
-  for (const char* map : {"map.svx", "nav.yaml"}) {
-    const fs::path picture = out / (std::string(map) + ".picture.png");
+  for (const char* map : {"map.svx", "nav.yaml", "."}) {
+    const fs::path picture = out / (std::string("picture of ") + map + ".png");
     EXPECT_EQ(run_program("info " + quoted(out / map) + " --picture " + quoted(picture)).exit_code,
               0);
     EXPECT_GT(fs::file_size(picture), 1000U) << map;
   }
+  EXPECT_EQ(run_program("info " + quoted(data) + " --picture " + quoted(out / "no.png")).exit_code,
+            2);
   for (const fs::path& what : {data, out / "map.svx", out / "nav.yaml", data / "calib.yaml"}) {
     const ProgramResult check = run_program("check " + quoted(what));
     EXPECT_EQ(check.exit_code, 0) << check.output;

@@ -56,7 +56,7 @@ TEST(ScoreMap, OtherCellSizesNeedResampling) {
       write_drawn(folder / "plan.yaml", kPlan) + write_drawn(folder / "fine.yaml", fine, 0.125);
   const ProgramResult refused = run_program("score map " + maps);
   EXPECT_EQ(refused.exit_code, 3);
-  EXPECT_THAT(refused.output, HasSubstr("cells of 0.25 m and of 0.125 m cannot be compared"));
+  EXPECT_THAT(refused.output, HasSubstr("--resample brings it to those"));
   const ProgramResult result =
       run_program("score map " + maps + "--resample --json '" + (folder / "s.json").string() + "'");
   EXPECT_EQ(result.exit_code, 0) << result.output;

@@ -59,7 +59,8 @@ void print_navigation_map(const fs::path& path, const std::string& picture) {
                            grid.origin_m.x(), grid.origin_m.y());
 }
 
-void print_run(const fs::path& folder) {
+void print_run(const fs::path& folder, const std::string& picture) {
+  if (!picture.empty()) write_png(picture, draw_voxels(read_voxel_map(folder / "map.svx")));
   const fs::path path = folder / "report.json";
   const auto report =
       nlohmann::ordered_json::parse(read_file(path, kMaxReportBytes), nullptr, false);
@@ -101,7 +102,9 @@ ExitCode run(const InfoOptions& options) {
   else if (path.extension() == ".yaml")
     print_navigation_map(path, options.picture);
   else if (fs::exists(path / "report.json"))
-    print_run(path);
+    print_run(path, options.picture);
+  else if (!options.picture.empty())
+    throw UsageError(path.string() + ": --picture draws maps, and this is none");
   else
     print_source(path);
   return ExitCode::ok;
@@ -115,7 +118,7 @@ void add_info(CLI::App& program, Action& action) {
   command->add_option("WHAT", options->what, "data set, map.svx, nav.yaml or the folder of a run");
   command
       ->add_option("--picture", options->picture,
-                   "draw the map: voxels in colour by height, or cells")
+                   "draw the map: voxels in colour by height (of a run, too), or cells")
       ->type_name("FILE.png");
   command->add_flag("--parameters", options->parameters, "print the page of all parameters");
   command->callback([options, &action] { action = [options] { return run(*options); }; });

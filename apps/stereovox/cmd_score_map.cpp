@@ -60,7 +60,14 @@ IdealMap read_ideal(const MapOptions& options) {
 // The map to be scored, brought to the ideal one as far as the options ask for it.
 OccupancyGrid2D read_compared(const MapOptions& options, const IdealMap& ideal) {
   OccupancyGrid2D map = read_map_server(options.map).grid;
-  if (options.resample) map = resampled_to(map, ideal.theoretical.geometry);
+  const GridGeometry& lattice = ideal.theoretical.geometry;
+  if (options.resample)
+    map = resampled_to(map, lattice);
+  else if (!have_same_cell_size(map.geometry, lattice))
+    throw Error(
+        fmt::format("{}: its cells are {:.9g} m wide, those of {} {:.9g} m; --resample "
+                    "brings it to those",
+                    options.map, map.geometry.cell_size_m, options.ideal, lattice.cell_size_m));
   if (!options.align) return map;
   const AlignedMap aligned = aligned_to(ideal, map, kMaxAlignment_m);
   std::cout << fmt::format("aligned: moved by ({:g}, {:g}) m\n", aligned.shift_m.x(),

@@ -20,7 +20,7 @@ double value_of(CellLabel label, double state, MapForm form) {
 }
 
 void require_same_cell_size(const GridGeometry& a, const GridGeometry& b) {
-  if (std::abs(a.cell_size_m - b.cell_size_m) > kSizeTolerance * a.cell_size_m)
+  if (!have_same_cell_size(a, b))
     throw Error(fmt::format("maps: cells of {:.9g} m and of {:.9g} m cannot be compared",
                             a.cell_size_m, b.cell_size_m));
 }
@@ -83,6 +83,10 @@ OccupancyGrid2D extended_to(const OccupancyGrid2D& map, const GridGeometry& regi
     for (int x = 0; x < region.width; ++x)
       copy_cell(map, offset + Eigen::Vector2i(x, y), result, {x, y});
   return result;
+}
+
+bool have_same_cell_size(const GridGeometry& a, const GridGeometry& b) {
+  return std::abs(a.cell_size_m - b.cell_size_m) <= kSizeTolerance * a.cell_size_m;
 }
 
 OccupancyGrid2D resampled_to(const OccupancyGrid2D& map, const GridGeometry& lattice) {

@@ -38,6 +38,9 @@ GridGeometry union_of(const GridGeometry& a, const GridGeometry& b);
 // The map on another extent of its lattice; cells beyond the map are unknown.
 OccupancyGrid2D extended_to(const OccupancyGrid2D& map, const GridGeometry& region);
 
+// Up to the rounding of files.
+bool have_same_cell_size(const GridGeometry& a, const GridGeometry& b);
+
 // The map on the lattice of `lattice`, over the map's own extent: each cell is that of the map in
 // which its centre lies.
 OccupancyGrid2D resampled_to(const OccupancyGrid2D& map, const GridGeometry& lattice);

@@ -4,6 +4,7 @@
 #include <yaml-cpp/eventhandler.h>
 
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "stereovox/core/error.h"
@@ -14,7 +15,7 @@ namespace stereovox {
 namespace {
 
 constexpr std::uint64_t kMaxYamlBytes = 16ULL << 20;
-constexpr int kMaxDepth = 32;
+constexpr std::size_t kMaxDepth = 32;
 // 32 aliases can expand a document at most e^(32/e) = 130 000 times; real files hold a few.
 constexpr int kMaxAliases = 32;
 
@@ -22,46 +23,68 @@ std::string place(const std::string& source, const YAML::Mark& mark) {
   return mark.is_null() ? source : fmt::format("{}:{}", source, mark.line + 1);
 }
 
-// Walks a document without building it, and stops at the limits.
-class LimitChecker : public YAML::EventHandler {
+// Walks a document without building it, and stops at the limits and at a key that a map has twice:
+// one of its values would be ignored.
+class Inspector : public YAML::EventHandler {
  public:
-  explicit LimitChecker(const std::string& source) : source_(source) {}
+  explicit Inspector(const std::string& source) : source_(source) {}
 
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                const std::string&) override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { meet(mark, nullptr); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string& text) override {
+    meet(mark, &text);
+  }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
     if (++aliases_ > kMaxAliases)
       throw Error(fmt::format("{}: more than {} aliases", place(source_, mark), kMaxAliases));
+    meet(mark, nullptr);
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
                        YAML::EmitterStyle::value) override {
-    enter(mark);
+    enter(mark, false);
   }
-  void OnSequenceEnd() override { --depth_; }
+  void OnSequenceEnd() override { open_.pop_back(); }
   void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
                   YAML::EmitterStyle::value) override {
-    enter(mark);
+    enter(mark, true);
   }
-  void OnMapEnd() override { --depth_; }
+  void OnMapEnd() override { open_.pop_back(); }
 
  private:
-  void enter(const YAML::Mark& mark) {
-    if (++depth_ > kMaxDepth)
+  // A map or a list that has not ended.
+  struct Open {
+    bool is_map, expects_key = true;
+    std::set<std::string> keys = {};
+  };
+
+  // A key, a value or an entry; its text if it is a scalar.
+  void meet(const YAML::Mark& mark, const std::string* text) {
+    if (open_.empty() || !open_.back().is_map) return;
+    Open& map = open_.back();
+    if (map.expects_key && text != nullptr && !map.keys.insert(*text).second)
+      throw Error(fmt::format("{}: {} is there twice", place(source_, mark), in_quotes(*text)));
+    map.expects_key = !map.expects_key;
+  }
+
+  void enter(const YAML::Mark& mark, bool is_map) {
+    meet(mark, nullptr);
+    open_.push_back({.is_map = is_map});
+    if (open_.size() > kMaxDepth)
       throw Error(fmt::format("{}: nested more than {} deep", place(source_, mark), kMaxDepth));
   }
 
   std::string source_;
-  int depth_ = 0, aliases_ = 0;
+  std::vector<Open> open_;
+  int aliases_ = 0;
 };
 
-void check_limits(const std::string& text, const std::string& source) {
+void inspect(const std::string& text, const std::string& source) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
-  LimitChecker checker(source);
-  parser.HandleNextDocument(checker);
+  Inspector inspector(source);
+  parser.HandleNextDocument(inspector);
 }
 
 std::string shown(const YAML::Node& node) {
@@ -101,7 +124,7 @@ YAML::Node parse_yaml(std::string text, const std::string& source) {
   // Not a YAML directive; a comment keeps the line numbers.
   if (text.starts_with("%YAML:")) text[0] = '#';
   try {
-    check_limits(text, source);
+    inspect(text, source);
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw Error(fmt::format("{}: {}", place(source, error.mark), error.msg));

@@ -1,4 +1,5 @@
-// YAML from outside, read so that no file can harm: at most 16 MiB, 32 levels deep, 32 aliases.
+// YAML from outside, read so that no file can harm: at most 16 MiB, 32 levels deep, 32 aliases, no
+// key twice in a map.
 // Accessors name the file, the line and the key: "calib.yaml: 'fx' is missing",
 // "calib.yaml:3: 'fx' is 'abc', not a finite number".
 #pragma once

@@ -77,6 +77,14 @@ TEST(YamlFile, RefusesDeepNestingInEachNotation) {
   EXPECT_THAT(parse_complaint(lines), HasSubstr("nested more than 32 deep"));
 }
 
+TEST(YamlFile, RefusesAKeyThatAMapHasTwice) {
+  EXPECT_EQ(parse_complaint("a: 1\nb: 2\na: 3\n"), "a.yaml:3: 'a' is there twice");
+  EXPECT_EQ(parse_complaint("m:\n  k: [a, a]\n  n: {x: 1, x: 2}\n"),
+            "a.yaml:3: 'x' is there twice");
+  EXPECT_EQ(parse_complaint("a: {k: 1}\nb: {k: k}\n? [k]\n: k\nk: k\nc:\nd: [a, {k: ~}]\n"), "");
+  EXPECT_EQ(parse_complaint("a: &x k\nb: *x\nb: *x\n"), "a.yaml:3: 'b' is there twice");
+}
+
 TEST(YamlFile, RefusesAnAliasBomb) {
   std::string bomb = "a0: &a0 [x, x]\n";
   for (int i = 1; i < 30; ++i)
