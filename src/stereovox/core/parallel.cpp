@@ -37,6 +37,7 @@ void for_each_on_plain_threads(int begin, int end, int threads,
   };
   {
     std::vector<std::jthread> workers;
+    workers.reserve(threads);
     for (int i = 0; i < threads; ++i) workers.emplace_back(work);
   }
   if (error) std::rethrow_exception(error);

@@ -113,10 +113,9 @@ Eigen::Quaterniond yaml_rotation(const YAML::Node& map, const std::string& key,
 SE3 yaml_rigid_motion(const YAML::Node& map, const std::string& key, const std::string& source) {
   const std::vector<double> m = yaml_matrix(map, key, 16, source);
   const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> T(m.data());
-  const SE3 motion{rotation_of(T.topLeftCorner<3, 3>(), key, source), T.topRightCorner<3, 1>()};
   if (!T.row(3).isApprox(Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)))
     throw Error(fmt::format("{}: the last row of '{}' is not 0 0 0 1", source, key));
-  return motion;
+  return {rotation_of(T.topLeftCorner<3, 3>(), key, source), T.topRightCorner<3, 1>()};
 }
 
 bool is_rectified(const StereoRig& rig) {

@@ -166,7 +166,7 @@ std::vector<double> yaml_numbers(const YAML::Node& map, const std::string& key,
 
 std::vector<double> yaml_numbers(const YAML::Node& map, const std::string& key, std::size_t count,
                                  const std::string& source) {
-  const std::vector<double> numbers = yaml_numbers(map, key, source);
+  std::vector<double> numbers = yaml_numbers(map, key, source);
   if (numbers.size() != count)
     throw Error(fmt::format("{}: '{}' has {} numbers, {} are needed",
                             place(source, yaml_value(map, key, source).Mark()), key, numbers.size(),
