@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "stereovox/core/error.h"
@@ -143,10 +143,8 @@ StereoRig opencv_rig(const fs::path& intrinsics_path, const fs::path& extrinsics
 StereoRig opencv_rig_of(const fs::path& path, const YAML::Node& root, const ImageSize& image_size) {
   const bool has_intrinsics = has_opencv_intrinsics(root);
   if (has_intrinsics && has_opencv_extrinsics(root)) return opencv_rig(path, path, image_size);
-  const char *const here = has_intrinsics ? "intrinsics" : "extrinsics", *const there =
-                                                                             has_intrinsics
-                                                                                 ? "extrinsics"
-                                                                                 : "intrinsics";
+  std::string here = "intrinsics", there = "extrinsics";
+  if (!has_intrinsics) std::swap(here, there);
   const fs::path other = sibling(path, here, there);
   if (other.empty() || !fs::exists(other))
     throw Error(

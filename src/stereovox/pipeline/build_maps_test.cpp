@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "stereovox/core/error.h"
@@ -25,51 +26,46 @@ std::unique_ptr<StereoSequence> demo(const PipelineConfig& config) {
                        std::nullopt);
 }
 
-// The demo drive as a camera that now and then sees nothing.
-class Blinking : public StereoSequence {
+// The demo drive through a camera that is not as it should be.
+class Changed : public StereoSequence {
  public:
-  Blinking(std::unique_ptr<StereoSequence> sequence, std::set<int> dark)
-      : sequence_(std::move(sequence)), dark_(std::move(dark)) {}
+  using Change = std::function<void(StereoFrame& frame)>;
+
+  Changed(std::unique_ptr<StereoSequence> sequence, Change change)
+      : sequence_(std::move(sequence)), change_(std::move(change)) {}
   const StereoRig& rig() const override { return sequence_->rig(); }
   const SequenceInfo& info() const override { return sequence_->info(); }
   const Trajectory& truth() const override { return sequence_->truth(); }
   std::span<const SkippedPair> skipped() const override { return sequence_->skipped(); }
   std::optional<StereoFrame> next() override {
     std::optional<StereoFrame> frame = sequence_->next();
-    if (frame && dark_.contains(frame->index)) {
-      frame->left.pixels = cv::Mat1b(frame->left.pixels.size(), 2);
-      frame->right.pixels = cv::Mat1b(frame->right.pixels.size(), 2);
-    }
+    if (frame) change_(*frame);
     return frame;
   }
 
  private:
   std::unique_ptr<StereoSequence> sequence_;
-  std::set<int> dark_;
+  Change change_;
 };
 
-// The demo drive from a camera that hangs: from its third frame on it shows that one again.
-class Hanging : public StereoSequence {
- public:
-  explicit Hanging(std::unique_ptr<StereoSequence> sequence) : sequence_(std::move(sequence)) {}
-  const StereoRig& rig() const override { return sequence_->rig(); }
-  const SequenceInfo& info() const override { return sequence_->info(); }
-  const Trajectory& truth() const override { return sequence_->truth(); }
-  std::span<const SkippedPair> skipped() const override { return sequence_->skipped(); }
-  std::optional<StereoFrame> next() override {
-    std::optional<StereoFrame> frame = sequence_->next();
-    if (!frame) return frame;
-    if (last_ && last_->index >= 2) {
-      frame->left.pixels = last_->left.pixels.clone();
-      frame->right.pixels = last_->right.pixels.clone();
-    }
-    return last_ = frame;
-  }
+// Now and then it sees nothing.
+Changed::Change blinks(std::set<int> dark) {
+  return [dark = std::move(dark)](StereoFrame& frame) {
+    if (!dark.contains(frame.index)) return;
+    frame.left.pixels = cv::Mat1b(frame.left.pixels.size(), 2);
+    frame.right.pixels = cv::Mat1b(frame.right.pixels.size(), 2);
+  };
+}
 
- private:
-  std::unique_ptr<StereoSequence> sequence_;
-  std::optional<StereoFrame> last_;
-};
+// From this frame on it shows the same again.
+Changed::Change hangs(int last) {
+  return [last, shown = StereoFrame{}](StereoFrame& frame) mutable {
+    if (frame.index == last) shown = frame;
+    if (frame.index <= last) return;
+    frame.left.pixels = shown.left.pixels.clone();
+    frame.right.pixels = shown.right.pixels.clone();
+  };
+}
 
 BuildResult build(StereoSequence& sequence, const PipelineConfig& config,
                   const std::optional<Trajectory>& poses = std::nullopt) {
@@ -91,7 +87,7 @@ TEST(BuildMaps, TracksAndMapsEachFrame) {
 
 TEST(BuildMaps, ALostFrameIsReportedWithItsTimeAndTouchesNoMap) {
   const PipelineConfig config = config_for(12);
-  Blinking sequence(demo(config), {6, 7});
+  Changed sequence(demo(config), blinks({6, 7}));
   const BuildResult result = build(sequence, config);
   EXPECT_EQ(result.frames, 12);
   EXPECT_EQ(result.tracked, 10);
@@ -106,7 +102,7 @@ TEST(BuildMaps, ALostFrameIsReportedWithItsTimeAndTouchesNoMap) {
 
 TEST(BuildMaps, PicturesThatComeTwiceAreMappedOnce) {
   const PipelineConfig config = config_for(6);
-  Hanging sequence(demo(config));
+  Changed sequence(demo(config), hangs(2));
   const BuildResult hung = build(sequence, config);
   EXPECT_EQ(hung.tracked, 6);
   EXPECT_EQ(hung.repeated, 3);
@@ -193,24 +189,15 @@ TEST(BuildMaps, StoppedInTheSecondPassItKeepsWhatIsMapped) {
 
 TEST(BuildMaps, AnErrorOfTheFrontHalfReachesTheCaller) {
   const PipelineConfig config = config_for(12);
-  class Failing : public Blinking {
-   public:
-    using Blinking::Blinking;
-    std::optional<StereoFrame> next() override {
-      if (++calls_ > 7) throw Error("left/000007.png: is cut off");
-      return Blinking::next();
-    }
-
-   private:
-    int calls_ = 0;
-  };
-  Failing sequence(demo(config), {});
+  Changed sequence(demo(config), [calls = 0](const StereoFrame&) mutable {
+    if (++calls > 7) throw Error("left/000007.png: is cut off");
+  });
   EXPECT_THROW(build(sequence, config), Error);
 }
 
 TEST(BuildMaps, ACameraThatSeesNothingLeavesAnEmptyMap) {
   const PipelineConfig config = config_for(4);
-  Blinking sequence(demo(config), {0, 1, 2, 3});
+  Changed sequence(demo(config), blinks({0, 1, 2, 3}));
   const BuildResult result = build(sequence, config);
   EXPECT_EQ(result.tracked, 0);
   ASSERT_EQ(result.segments.size(), 1U);
