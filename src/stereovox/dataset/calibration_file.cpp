@@ -9,6 +9,7 @@
 #include "stereovox/core/error.h"
 #include "stereovox/dataset/calibration.h"
 #include "stereovox/dataset/calibration_parts.h"
+#include "stereovox/dataset/euroc_layout.h"
 
 namespace stereovox {
 namespace {
@@ -156,11 +157,6 @@ StereoRig opencv_rig_of(const fs::path& path, const YAML::Node& root, const Imag
 
 // ---- all
 
-StereoRig asl_rig(const fs::path& folder) {
-  return stereo_rig(read_asl_camera(folder / "cam0" / "sensor.yaml"),
-                    read_asl_camera(folder / "cam1" / "sensor.yaml"));
-}
-
 StereoRig kitti_rig_of(const fs::path& path, const ImageSize& image_size) {
   return read_kitti_calibration(path, 0, 1, image_size()).rig;
 }
@@ -170,7 +166,7 @@ StereoRig rig_of_yaml(const fs::path& path, const ImageSize& image_size) {
   if (!root.IsMap()) throw Error(path.string() + ": is no calibration (no keys with values)");
   if (root["cam0"].IsDefined()) return kalibr_rig(root, path.string());
   if (root["camera_matrix"].IsDefined()) return ros_rig_of(path);
-  if (root["T_BS"].IsDefined()) return asl_rig(path.parent_path().parent_path());
+  if (root["T_BS"].IsDefined()) return euroc_rig(path.parent_path().parent_path());
   if (has_opencv_intrinsics(root) || has_opencv_extrinsics(root))
     return opencv_rig_of(path, root, image_size);
   return read_plain_calibration(path);
@@ -181,8 +177,7 @@ StereoRig rig_of_folder(const fs::path& folder, const ImageSize& image_size) {
        {"calib.yaml", "camchain.yaml", "left.yaml", "intrinsics.yml", "intrinsics.yaml"})
     if (fs::exists(folder / name)) return rig_of_yaml(folder / name, image_size);
   if (fs::exists(folder / "calib.txt")) return kitti_rig_of(folder / "calib.txt", image_size);
-  if (fs::is_directory(folder / "mav0")) return asl_rig(folder / "mav0");
-  if (fs::is_directory(folder / "cam0")) return asl_rig(folder);
+  if (is_euroc_layout(folder)) return euroc_rig(folder);
   throw Error(fmt::format(
       "{}: holds no calibration; looked for calib.yaml, camchain.yaml (Kalibr), left.yaml and "
       "right.yaml (ROS), intrinsics.yml and extrinsics.yml (OpenCV), calib.txt (KITTI), cam0/ and "

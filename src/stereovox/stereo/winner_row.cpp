@@ -80,17 +80,16 @@ class LocalCosts {
   const std::ptrdiff_t candidates_;
 };
 
-// Whether nothing is what the local cost of a candidate is that lies farther than kChoiceReach from
-// the winner.
-bool is_free_elsewhere(const std::array<const std::uint8_t*, kLocalWidth_px>& columns,
-                       int candidates, int winner) {
+// Whether a candidate farther than kChoiceReach from the winner has no local cost at all.
+bool costs_nothing_elsewhere(const std::array<const std::uint8_t*, kLocalWidth_px>& columns,
+                             int candidates, int winner) {
   constexpr Bytes kSevenBits = 0x7F7F7F7F7F7F7F7FULL, kHighBit = ~kSevenBits;
   static_assert(kMaxMatchingCost < 1 << (kByte - 2), "bytes must not carry over");
   for (int first = 0; first < candidates; first += kByte) {
     Bytes any = 0;
     for (const std::uint8_t* const column : columns) any |= load(column + first);
-    for (Bytes free = ~(any + kSevenBits) & kHighBit; free != 0; free &= free - 1)
-      if (std::abs(first + std::countr_zero(free) / kByte - winner) > kChoiceReach) return true;
+    for (Bytes none = ~(any + kSevenBits) & kHighBit; none != 0; none &= none - 1)
+      if (std::abs(first + std::countr_zero(none) / kByte - winner) > kChoiceReach) return true;
   }
   return false;
 }
@@ -131,17 +130,17 @@ void choose_locally(const std::uint8_t* cost, int candidates, WinnerRow& row) {
 
 void doubt_repetitions(const std::uint8_t* cost, int candidates, WinnerRow& row) {
   const int width = static_cast<int>(row.candidate.size());
-  const auto next_free = [&](int x) {  // std::find, but by vectors
+  const auto next_without_cost = [&](int x) {  // std::find, but by vectors
     const void* const found = std::memchr(row.local.data() + x, 0, width - x);
     return found == nullptr
                ? width
                : static_cast<int>(static_cast<const std::uint8_t*>(found) - row.local.data());
   };
-  for (int x = next_free(0); x < width; x = next_free(x + 1)) {
+  for (int x = next_without_cost(0); x < width; x = next_without_cost(x + 1)) {
     std::array<const std::uint8_t*, kLocalWidth_px> columns;
     for (int k = 0; k < kLocalWidth_px; ++k)
       columns[k] = cost + std::clamp(x + k - kLocalWidth_px / 2, 0, width - 1) * candidates;
-    if (is_free_elsewhere(columns, candidates, row.candidate[x])) row.second[x] = row.cost[x];
+    if (costs_nothing_elsewhere(columns, candidates, row.candidate[x])) row.second[x] = row.cost[x];
   }
 }
 

@@ -58,9 +58,9 @@ TEST(WinnerRow, DoubtsAsThePlainVersionDoes) {
     }
 }
 
-TEST(WinnerRow, DoubtsWhatIsFreeElsewhereButNotBesideTheWinner) {
+TEST(WinnerRow, DoubtsWhatCostsNothingElsewhereButNotBesideTheWinner) {
   constexpr int kWidth_px = 9, kCandidates = 32, kWinner = 10;
-  const auto second_with_free = [](int candidate) {
+  const auto second_without_cost_at = [](int candidate) {
     std::vector<std::uint8_t> cost(kWidth_px * kCandidates + kRowSlack, 3);
     for (int x = 0; x < kWidth_px; ++x)
       cost[x * kCandidates + kWinner] = cost[x * kCandidates + candidate] = 0;
@@ -70,10 +70,10 @@ TEST(WinnerRow, DoubtsWhatIsFreeElsewhereButNotBesideTheWinner) {
     doubt_repetitions(cost.data(), kCandidates, row);
     return row.second[4];
   };
-  EXPECT_EQ(second_with_free(kWinner), 9);
-  EXPECT_EQ(second_with_free(kWinner + kChoiceReach), 9);
-  EXPECT_EQ(second_with_free(kWinner + kChoiceReach + 1), 0);
-  EXPECT_EQ(second_with_free(0), 0);
+  EXPECT_EQ(second_without_cost_at(kWinner), 9);
+  EXPECT_EQ(second_without_cost_at(kWinner + kChoiceReach), 9);
+  EXPECT_EQ(second_without_cost_at(kWinner + kChoiceReach + 1), 0);
+  EXPECT_EQ(second_without_cost_at(0), 0);
 }
 
 }  // namespace
