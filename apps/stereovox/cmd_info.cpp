@@ -37,6 +37,8 @@ void print_map(const fs::path& path, const std::string& picture) {
                            fs::file_size(path), static_cast<double>(map.memory_bytes()) / 1e6);
   std::cout << fmt::format("voxels of {} m, floor at z = {:.3f} m, {} frames\n", map.voxel_size_m(),
                            map.floor_z_m(), map.frames_integrated);
+  if (const auto [low_m, high_m] = map.floor.z_range_m(); low_m < high_m)
+    std::cout << fmt::format("floor seen from z = {:.2f} to {:.2f} m\n", low_m, high_m);
   std::cout << fmt::format("{} observed: {} occupied, {} free\n", counts.observed, counts.occupied,
                            counts.free);
   if (const auto bounds = map.bounds()) {

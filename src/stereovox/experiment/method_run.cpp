@@ -56,7 +56,7 @@ void MethodRun::add(const MethodFrame& frame) {
                               v.wall_faces.observe(
                                   view_frame(frame.disparity, frame.camera, frame.T_world_camera,
                                              frame.stamp_ns, v.method.occupancy, v.map),
-                                  kFloor_m, v.method.navmap);
+                                  v.map.floor, v.method.navmap);
                           },
                           [&](OctomapBaseline& tree) {
                             tree.integrate(frame.disparity, frame.camera, frame.T_world_camera);

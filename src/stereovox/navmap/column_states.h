@@ -27,18 +27,39 @@ struct Layers {
   bool contains(int z) const { return first <= z && z <= last; }
 };
 
-// The layers whose voxel centres lie in the band, or all layers that can exist.
-Layers layers_of(const VoxelMap& map, const NavmapParams& params);
+// The layers above each cell whose voxel centres lie in the band over the floor there, or all
+// layers that can exist. Refers to the map, whose floor must not change.
+class ColumnLayers {
+ public:
+  ColumnLayers(const VoxelMap& map, const NavmapParams& params);
 
-// Takes the voxels of one more block into account.
-void add_block(const VoxelBlock& block, const Layers& layers, int min_observations,
-               ColumnTile& tile);
+  Layers above(const Eigen::Vector2i& cell);
+  // From the lowest to the highest layer above a tile of cells.
+  Layers above_tile(const TileIndex& index);
+  // Takes the voxels of one more block into account.
+  void add_block(const VoxelBlock& block, int min_observations, ColumnTile& tile);
+
+ private:
+  using Tile = std::array<Layers, kCellsPerTile>;
+
+  Layers over_floor(double floor_z_m) const;
+  const Tile& of(const TileIndex& index);
+  void add_layer(const VoxelBlock& block, int z, const Tile* limits, int min_observations,
+                 ColumnTile& tile) const;
+
+  const VoxelMap& map_;
+  const NavmapParams& params_;
+  FloorReader floor_;
+  bool is_same_everywhere_;
+  Layers everywhere_;
+  std::map<TileIndex, Tile> tiles_;  // that were asked for, where the floor is not level
+};
 
 // Calls visit(tile index, ColumnTile) for every column of blocks of the map, in canonical order but
 // for columns of the same map tile in x, which come by its y first.
 template <class Visit>
 void for_each_column_tile(const VoxelMap& map, const NavmapParams& params, const Visit& visit) {
-  const Layers layers = layers_of(map, params);
+  ColumnLayers layers(map, params);
   std::map<TileIndex, ColumnTile> columns;  // of the map tiles above each other
   std::optional<Eigen::Vector2i> place;
   const auto finish = [&] {
@@ -49,8 +70,8 @@ void for_each_column_tile(const VoxelMap& map, const NavmapParams& params, const
     if (place && *place != tile.head<2>()) finish();
     place = tile.head<2>();
     for (const VoxelBlock* const block : blocks)
-      add_block(*block, layers, params.min_observations,
-                columns[{block->index.x(), block->index.y()}]);
+      layers.add_block(*block, params.min_observations,
+                       columns[{block->index.x(), block->index.y()}]);
   });
   finish();
 }
@@ -59,13 +80,13 @@ void for_each_column_tile(const VoxelMap& map, const NavmapParams& params, const
 class ColumnReader {
  public:
   ColumnReader(const VoxelMap& map, const NavmapParams& params);
-  ColumnTile read(const TileIndex& index) const;
+  ColumnTile read(const TileIndex& index);
 
  private:
   const VoxelMap& map_;
-  Layers layers_;
+  ColumnLayers layers_;
   int min_observations_;
-  int first_block_z_ = 0, last_block_z_ = -1;
+  std::optional<Layers> blocks_;  // along z; nothing: those that the layers need
 };
 
 }  // namespace stereovox

@@ -75,11 +75,12 @@ void sort_unique(Cells& cells) {
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
 }
 
-// The distinct cells below the voxels in the layers.
-Cells cells_below(std::span<const Eigen::Vector3i> voxels, const Layers& layers) {
+// The distinct cells below the voxels that lie in the layers above them.
+Cells cells_below(std::span<const Eigen::Vector3i> voxels, ColumnLayers layers) {
   Cells cells;
   for (const Eigen::Vector3i& voxel : voxels)
-    if (layers.contains(voxel.z()) && (cells.empty() || cells.back() != voxel.head<2>()))
+    if (layers.above(voxel.head<2>()).contains(voxel.z()) &&
+        (cells.empty() || cells.back() != voxel.head<2>()))
       cells.emplace_back(voxel.head<2>());
   sort_unique(cells);
   return cells;
@@ -113,7 +114,7 @@ void mark_lines(const Eigen::Vector2i& robot, const Cells& targets, bool stops_a
 // rises by hits only.
 void update_held(const VoxelMap& map, const Cells& hit_cells, const NavmapParams& params,
                  CellSet& held) {
-  const ColumnReader reader(map, params);
+  ColumnReader reader(map, params);
   CellSet candidates = held;
   for (const Eigen::Vector2i& cell : hit_cells)
     candidates.insert(tile_of(cell), std::uint64_t{1} << position_in_tile(cell));
@@ -158,7 +159,7 @@ bool is_occupied(const ColumnState& column, bool is_held, const NavmapParams& pa
 
 void SightLines::observe(const VoxelMap& map, const Eigen::Vector2d& robot_xy_world,
                          std::span<const Eigen::Vector3i> hits, const NavmapParams& params) {
-  const Cells hit_cells = cells_below(hits, layers_of(map, params));
+  const Cells hit_cells = cells_below(hits, ColumnLayers(map, params));
   if (params.hysteresis > 0.0) update_held(map, hit_cells, params, held_);
 
   const bool is_printed = params.label_rule == LabelRule::as_printed;

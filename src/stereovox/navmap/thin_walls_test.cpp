@@ -67,8 +67,8 @@ void observe_wall(const SE3& T_world_camera, double depth_m, WallFaces& faces) {
   const RectifiedCamera camera = scene::camera();
   for (int frame = 0; frame < 5; ++frame)
     faces.observe(
-        view_frame(image, camera, T_world_camera, frame * scene::kSecond_ns, occupancy, map), 0.0,
-        {});
+        view_frame(image, camera, T_world_camera, frame * scene::kSecond_ns, occupancy, map),
+        map.floor, {});
 }
 
 // Of a wall that a camera at x = 0 sees at `wall_x_m`.

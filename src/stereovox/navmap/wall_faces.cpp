@@ -51,16 +51,10 @@ Eigen::Vector2d way_along_surface_m(const FrameView& frame, int u, int v,
 
 bool is_known(const WallFace& face) { return face.information_per_m2 >= kMinInformation_per_m2; }
 
-struct Band {
-  double min_z_m, max_z_m;
-
-  bool contains(double z_m) const { return min_z_m <= z_m && z_m <= max_z_m; }
-};
-
-// The heights of the voxels that count.
-Band band_of(const FrameView& frame, double floor_z_m, const NavmapParams& params) {
-  if (params.column == ColumnRule::whole) return {frame.min_z_m, frame.max_z_m};
-  return {floor_z_m + params.min_height_m, floor_z_m + params.max_height_m};
+// Whether voxels at this height above the floor count.
+bool is_in_band(double height_m, const NavmapParams& params) {
+  return params.column == ColumnRule::whole ||
+         (params.min_height_m <= height_m && height_m <= params.max_height_m);
 }
 
 // In whole steps, if it is about that.
@@ -87,16 +81,16 @@ void WallFace::add(double offset_m, double weight_per_m2) {
   information_per_m2 = std::min(static_cast<float>(sum), kMaxInformation_per_m2);
 }
 
-void WallFaces::observe(const FrameView& frame, double floor_z_m, const NavmapParams& params) {
-  const Band band = band_of(frame, floor_z_m, params);
+void WallFaces::observe(const FrameView& frame, const FloorSurface& floor,
+                        const NavmapParams& params) {
+  FloorReader floor_reader(floor);
   const int step = frame.steps.surface_px;
   for (int v = first_sample(step); v < frame.disparity.height(); v += step)
     for (int u = first_sample(step); u < frame.disparity.width(); u += step) {
       const auto point = measure_pixel(frame, u, v);
-      if (!point || !band.contains(point->p_world.z()) || !marks_surface(frame, *point) ||
-          !is_exact(frame, *point))
-        continue;
-      const double height_m = point->p_world.z() - floor_z_m;
+      if (!point || !marks_surface(frame, *point) || !is_exact(frame, *point)) continue;
+      const double height_m = point->p_world.z() - floor_reader.z_m(point->p_world.head<2>());
+      if (!is_in_band(height_m, params)) continue;
       const Eigen::Vector2d way_m = way_along_surface_m(frame, u, v, point->p_world);
       Slice& slice = slices_[static_cast<int>(std::floor(height_m / kFaceSliceHeight_m))];
       for (const int axis : {0, 1})

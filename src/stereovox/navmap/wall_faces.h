@@ -4,7 +4,7 @@
 // Heights are kept apart in slices, so that a shelf is not lost in the wall behind it.
 //
 //   WallFaces faces;
-//   for each frame: faces.observe(frame, params);
+//   for each frame: faces.observe(frame, map.floor, params);
 //   map.attachments[kWallFacesAttachment] = to_bytes(faces);
 #pragma once
 
@@ -43,7 +43,7 @@ class WallFaces {
   // Adds the points of a frame that are exact against the voxel (is_exact) and at the heights that
   // count, along the axes that their surface looks along, by at most 45 degrees: the side of a wall
   // says nothing of where it ends. To be called after the frame has been integrated.
-  void observe(const FrameView& frame, double floor_z_m, const NavmapParams& params);
+  void observe(const FrameView& frame, const FloorSurface& floor, const NavmapParams& params);
 
   // How far the surfaces that are seen from the side to which `step` (a unit step along an axis)
   // leads reach into `cell` across the border with the cell on the other side: the farthest of all

@@ -22,7 +22,7 @@ void observe(const DisparityImage& image, const SE3& T_world_camera, WallFaces& 
   occupancy.voxel_size_m = kFaceCell_m;
   VoxelMap map(kFaceCell_m);
   const RectifiedCamera camera = scene::camera();
-  faces.observe(view_frame(image, camera, T_world_camera, 0, occupancy, map), 0.0, kParams);
+  faces.observe(view_frame(image, camera, T_world_camera, 0, occupancy, map), map.floor, kParams);
 }
 
 // What a camera at x = 0 that looks along `yaw_rad` sees for some time.

@@ -136,6 +136,16 @@ std::vector<int> rows_read(const SamplingSteps& steps, int height) {
   return rows;
 }
 
+void observe_floor(const DisparityImage& disparity, const RectifiedCamera& camera,
+                   const SE3& T_world_camera, const OccupancyParams& params, VoxelMap& map) {
+  if (!params.follow_floor) return;
+  const OccupancyParams ranged = with_ranges(params, camera);
+  check_caller(disparity, camera, T_world_camera);
+  check_reach(T_world_camera, ranged);
+  map.floor.observe(surface_points(disparity, camera, T_world_camera, ranged.max_clearing_m),
+                    T_world_camera.translation);
+}
+
 FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& camera,
                      const SE3& T_world_camera, std::int64_t stamp_ns,
                      const OccupancyParams& params, VoxelMap& map) {
@@ -145,6 +155,8 @@ FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& cam
                             map.voxel_size_m(), params.voxel_size_m));
   const OccupancyParams ranged = with_ranges(params, camera);
   check_reach(T_world_camera, ranged);
+  const auto [lowest_floor_m, highest_floor_m] =
+      map.floor.z_range_m(T_world_camera.translation.head<2>(), ranged.max_clearing_m);
   return {.disparity = disparity,
           .camera = camera,
           .params = ranged,
@@ -154,8 +166,8 @@ FrameView view_frame(const DisparityImage& disparity, const RectifiedCamera& cam
           .T_camera_world = inverse(T_world_camera),
           .measuring = measuring_frame(params.error_model, camera, T_world_camera),
           .stamp_ms = stamp_in_map_ms(stamp_ns, map),
-          .min_z_m = map.floor_z_m() + params.min_height_m,
-          .max_z_m = map.floor_z_m() + params.max_height_m};
+          .min_z_m = lowest_floor_m + params.min_height_m,
+          .max_z_m = highest_floor_m + params.max_height_m};
 }
 
 std::optional<PointMeasurement> measure_pixel(const FrameView& frame, int u, int v) {

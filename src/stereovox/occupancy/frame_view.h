@@ -59,6 +59,11 @@ struct Segment {
   Eigen::Vector3d from, to;
 };
 
+// If the parameters say so, the map learns where the floor lies from a frame that is to be
+// integrated. To be called before view_frame, which takes the height limits from there.
+void observe_floor(const DisparityImage& disparity, const RectifiedCamera& camera,
+                   const SE3& T_world_camera, const OccupancyParams& params, VoxelMap& map);
+
 // Checks that the frame fits the map and sets the map's epoch if it is the first one. Throws Error
 // when the voxel sizes differ, the time stamp is before the epoch or more than 49 days after it, or
 // the view leaves the lattice; std::logic_error when image and camera differ in size or the pose is

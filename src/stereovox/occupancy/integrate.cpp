@@ -249,6 +249,7 @@ FrameUpdate integrate(const DisparityImage& disparity, const RectifiedCamera& ca
                       const OccupancyParams& params, int threads, VoxelMap& map) {
   const std::vector<int> rows = rows_read(sampling_steps(params, camera), disparity.height());
   const DisparityImage smooth = smoothed(disparity, params.smoothing, rows, threads);
+  observe_floor(disparity, camera, T_world_camera, params, map);
   const FrameView frame = view_frame(smooth, camera, T_world_camera, stamp_ns, params, map);
   const FrameObservation observation = observe_frame(frame, map, threads);
   const FrameChange change{.frame = frame,

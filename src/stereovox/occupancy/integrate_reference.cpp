@@ -250,6 +250,7 @@ FrameUpdate integrate_reference(const DisparityImage& disparity, const Rectified
                                 const SE3& T_world_camera, std::int64_t stamp_ns,
                                 const OccupancyParams& params, int /*threads*/, VoxelMap& map) {
   const DisparityImage smooth = smoothed_reference(disparity, params.smoothing);
+  observe_floor(disparity, camera, T_world_camera, params, map);
   const FrameView frame = view_frame(smooth, camera, T_world_camera, stamp_ns, params, map);
   const std::vector<PointMeasurement> points = surface_points(frame);
 

@@ -133,6 +133,7 @@ void merge(const VoxelMap& other, const SE3& T_map_other, VoxelMap& map) {
       map.set(place, joined(map.at(place), voxel));
     });
   });
+  map.floor.merge(other.floor, T_map_other);
   map.frames_integrated += other.frames_integrated;
 }
 
@@ -143,6 +144,7 @@ VoxelMap downsampled(const VoxelMap& map, int factor) {
   VoxelMap out(map.voxel_size_m() * factor, map.floor_z_m());
   out.epoch_ns = map.epoch_ns;
   out.frames_integrated = map.frames_integrated;
+  out.floor = map.floor;
   map.for_each_block([&](const VoxelBlock& block) {
     for_each_in(block.voxels.known(), [&](int i) {
       const Eigen::Vector3i voxel = voxel_at(block.index, i);

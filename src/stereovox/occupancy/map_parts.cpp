@@ -11,7 +11,10 @@ namespace {
 
 constexpr std::size_t kMaxAttachmentBytes = std::size_t{64} << 20;
 constexpr int kMaxBlocksPerChunk = 256;
+constexpr const char* kFloorAttachment = "floor";
 constexpr std::string_view kEndMark = "STEREOVOX-END\n";
+
+bool has_floor(const VoxelMap& map) { return !map.floor.squares().empty(); }
 
 void check_sum(MapInput& in, std::string_view bytes, const std::string& part) {
   const std::string sum = in.take(sizeof(std::uint32_t));
@@ -22,8 +25,10 @@ void check_sum(MapInput& in, std::string_view bytes, const std::string& part) {
 }  // namespace
 
 std::string encode_attachments(const VoxelMap& map) {
+  std::map<std::string, std::string> attachments = map.attachments;
+  if (has_floor(map)) attachments[kFloorAttachment] = to_bytes(map.floor);
   std::string bytes;
-  for (const auto& [name, blob] : map.attachments)
+  for (const auto& [name, blob] : attachments)
     for (const std::string& text : {name, blob}) {
       append_number(bytes, static_cast<std::uint32_t>(text.size()));
       bytes += text;
@@ -34,6 +39,10 @@ std::string encode_attachments(const VoxelMap& map) {
   return bytes;
 }
 
+std::uint32_t attachment_count(const VoxelMap& map) {
+  return static_cast<std::uint32_t>(map.attachments.size()) + (has_floor(map) ? 1 : 0);
+}
+
 void take_attachments(MapInput& in, std::uint32_t count, VoxelMap& map) {
   if (count == 0) return;
   const MapSection section = take_section(in, "attachments", kMaxAttachmentBytes);
@@ -41,9 +50,13 @@ void take_attachments(MapInput& in, std::uint32_t count, VoxelMap& map) {
     ByteReader reader(section.content);
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::string key(reader.take(reader.number<std::uint32_t>()));
-      map.attachments[key] = reader.take(reader.number<std::uint32_t>());
+      const std::string_view blob = reader.take(reader.number<std::uint32_t>());
+      if (key == kFloorAttachment)
+        map.floor = floor_from_bytes(blob, map.floor_z_m());
+      else
+        map.attachments[key] = blob;
     }
-    if (!reader.is_at_end() || map.attachments.size() != count)
+    if (!reader.is_at_end() || attachment_count(map) != count)
       throw std::runtime_error(fmt::format("are not {}", count));
   });
 }

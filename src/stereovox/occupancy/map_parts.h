@@ -10,8 +10,10 @@
 
 namespace stereovox {
 
-// Throws Error when the attachments exceed 64 MiB together.
+// The floor, where the map has seen it, is attached to the file like what others have attached to
+// the map. Throws Error when the attachments exceed 64 MiB together.
 std::string encode_attachments(const VoxelMap& map);
+std::uint32_t attachment_count(const VoxelMap& map);
 void take_attachments(MapInput& in, std::uint32_t count, VoxelMap& map);
 
 // The blocks of versions 1 and 2, chunk by chunk, until the header's number is reached. Blocks that

@@ -38,6 +38,7 @@ OccupancyParams tuned_params() {
   p.smoothing.radius_px = 2;
   p.max_sigma_half_voxels = 4.0;
   p.max_sigma_m = 0.0;
+  p.follow_floor = true;
   p.free_margin_sigmas = 2.0;
   p.union_rule = RankUnion{.quantile = 0.01, .majority = 0.1};
   p.homogeneity.min_homogeneity = 1.0;
@@ -81,6 +82,8 @@ void describe_selection(OccupancyParams& p, ParameterList& list) {
   list("min_height_m", p.min_height_m, {-100, 100},
        "measurements lower above the floor are ignored, as mirror images");
   list("max_height_m", p.max_height_m, {-100, 100}, "space higher above the floor is left alone");
+  list("follow_floor", p.follow_floor,
+       "heights count from the floor that is seen, not from a level one, where it rises or falls");
 }
 
 }  // namespace
@@ -111,6 +114,7 @@ void apply_preset(OccupancyPreset preset, OccupancyParams& params) {
   params.smoothing = chosen.smoothing;
   params.max_sigma_half_voxels = chosen.max_sigma_half_voxels;
   params.max_sigma_m = chosen.max_sigma_m;
+  params.follow_floor = chosen.follow_floor;
   params.error_model.noise = chosen.error_model.noise;
   params.error_model.depth_variance = chosen.error_model.depth_variance;
   params.observation = chosen.observation;

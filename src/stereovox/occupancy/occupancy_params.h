@@ -43,6 +43,7 @@ struct OccupancyParams {
   double max_sigma_m = kNoSigmaLimit_m;
   double min_height_m = -0.2;
   double max_height_m = 2.0;
+  bool follow_floor = false;
 
   SmoothingParams smoothing;
   StereoErrorModel error_model;

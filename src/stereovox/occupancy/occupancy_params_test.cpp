@@ -77,7 +77,7 @@ TEST(OccupancyParams, TunedHasTheChoicesOfCorrectedAndOtherNumbers) {
     if (a.parameters()[i].get() != b.parameters()[i].get())
       different += a.parameters()[i].path + " ";
   EXPECT_EQ(different,
-            "preset max_sigma_half_voxels max_sigma_m smoothing.radius_px union.quantile "
+            "preset max_sigma_half_voxels max_sigma_m follow_floor smoothing.radius_px union.quantile "
             "union.majority density.lambda observed_set free_margin_sigmas "
             "homogeneity.min_homogeneity update.max_credibility "
             "initial_state ");

@@ -39,6 +39,27 @@ inline DisparityImage wall_at(double depth_m) {
   return image;
 }
 
+// A landscape, whose height is a function of x and y, up to 8 m away.
+template <class Height>
+DisparityImage landscape(const SE3& T_world_camera, Height z_at) {
+  constexpr double kStep_m = 0.02, kFarthest_m = 8.0;
+  const PinholeCamera c = camera().pinhole;
+  DisparityImage image = empty_image();
+  for (int v = 0; v < c.height; ++v)
+    for (int u = 0; u < c.width; ++u) {
+      const Eigen::Vector3d ray((u - c.cx_px) / c.fx_px, (v - c.cy_px) / c.fy_px, 1.0);
+      double depth_m = kStep_m;
+      const auto is_above = [&] {
+        const Eigen::Vector3d p = T_world_camera * (depth_m * ray);
+        return p.z() > z_at(p.x(), p.y());
+      };
+      while (depth_m < kFarthest_m && is_above()) depth_m += kStep_m;
+      if (depth_m < kFarthest_m)
+        image.disparity_px(v, u) = camera().disparity_px(depth_m - 0.5 * kStep_m);
+    }
+  return image;
+}
+
 // Blobs at random depths, with noise, holes, far points and nonsense.
 inline DisparityImage random_image(std::mt19937& random) {
   std::uniform_real_distribution<float> depth_m(0.2F, 6.0F), noise_px(-0.4F, 0.4F), share(0, 1);

@@ -43,7 +43,7 @@ bool overlaps(const VoxelBounds& box, const Eigen::Vector3i& low, int side) {
 }  // namespace
 
 VoxelMap::VoxelMap(double voxel_size_m, double floor_z_m)
-    : voxel_size_m_(voxel_size_m), floor_z_m_(floor_z_m) {
+    : floor(floor_z_m), voxel_size_m_(voxel_size_m) {
   if (!(voxel_size_m >= kMinVoxelSize_m && voxel_size_m <= kMaxVoxelSize_m))
     throw Error(fmt::format("voxel size is {} m, outside [{}, {}]", voxel_size_m, kMinVoxelSize_m,
                             kMaxVoxelSize_m));
@@ -54,8 +54,8 @@ VoxelMap::VoxelMap(const VoxelMap& other)
     : epoch_ns(other.epoch_ns),
       frames_integrated(other.frames_integrated),
       attachments(other.attachments),
-      voxel_size_m_(other.voxel_size_m_),
-      floor_z_m_(other.floor_z_m_) {
+      floor(other.floor),
+      voxel_size_m_(other.voxel_size_m_) {
   other.for_each_block(
       [&](const VoxelBlock& block) { find_or_create_block(block.index).voxels = block.voxels; });
 }

@@ -24,6 +24,7 @@
 #include <string_view>
 #include <vector>
 
+#include "stereovox/occupancy/floor_surface.h"
 #include "stereovox/occupancy/tile_table.h"
 
 namespace stereovox {
@@ -40,7 +41,7 @@ struct VoxelBounds {
 // while their tile is in memory.
 class VoxelMap {
  public:
-  // The height of the floor belongs to the map because height limits count from it. Throws Error
+  // The floor belongs to the map because height limits count from it. Throws Error
   // when the size is not in [0.001, 10] m or the height is not finite.
   explicit VoxelMap(double voxel_size_m, double floor_z_m = 0.0);
   // A copy has no store: it holds everything in memory.
@@ -51,7 +52,7 @@ class VoxelMap {
   ~VoxelMap() = default;
 
   double voxel_size_m() const { return voxel_size_m_; }
-  double floor_z_m() const { return floor_z_m_; }
+  double floor_z_m() const { return floor.level_z_m(); }
 
   // The voxel; an unknown one when its block does not exist.
   Voxel at(const Eigen::Vector3i& index) const {
@@ -124,6 +125,7 @@ class VoxelMap {
   std::uint32_t frames_integrated = 0;
   // Named blobs that travel with the map in its file.
   std::map<std::string, std::string> attachments;
+  FloorSurface floor;
 
  private:
   static bool is_within_reach(const Eigen::Vector3i& block) {
@@ -142,7 +144,7 @@ class VoxelMap {
   void measure_later(VoxelTile& tile) const;
   void measure(VoxelTile& tile) const;
 
-  double voxel_size_m_, floor_z_m_;
+  double voxel_size_m_;
   TileTable table_;
   std::vector<std::unique_ptr<VoxelTile>> tiles_;
   std::size_t block_count_ = 0;

@@ -24,7 +24,7 @@ MapHeader header_of(const VoxelMap& map) {
           .frames_integrated = map.frames_integrated,
           .blocks = known.blocks,
           .known_voxels = known.voxels,
-          .attachments = static_cast<std::uint32_t>(map.attachments.size())};
+          .attachments = attachment_count(map)};
 }
 
 void put(std::ostream& out, std::string_view bytes) {
@@ -100,7 +100,7 @@ MapHeader take_header(MapInput& in) {
 void write_voxel_map(std::ostream& out, const VoxelMap& map) {
   const MapHeader header = header_of(map);
   std::string front = encode_header(header);
-  if (!map.attachments.empty()) front += encode_section({0, encode_attachments(map)});
+  if (header.attachments > 0) front += encode_section({0, encode_attachments(map)});
   put(out, front);
   std::uint64_t offset = front.size();
   std::vector<TileListing> tiles;

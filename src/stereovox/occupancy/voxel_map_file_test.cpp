@@ -75,6 +75,21 @@ TEST(VoxelMapFile, KeepsEverything) {
   }
 }
 
+std::vector<SurfacePoint> floor_points(double z_m) {
+  return std::vector<SurfacePoint>(20, {{1.2, 3.4, z_m}, true});
+}
+
+TEST(VoxelMapFile, KeepsTheFloorThatWasSeen) {
+  VoxelMap map = random_map(3);
+  map.attachments["note"] = "hello";
+  map.floor.observe(floor_points(-0.05), {0, 0, 1});
+  ASSERT_EQ(map.floor.squares().size(), 1U);
+  const VoxelMap read = map_of(bytes_of(map));
+  EXPECT_EQ(read.floor, map.floor);
+  EXPECT_EQ(read.attachments, map.attachments);
+  EXPECT_EQ(bytes_of(read), bytes_of(map));
+}
+
 TEST(VoxelMapFile, AnEmptyMapIsAMap) {
   const VoxelMap read = map_of(bytes_of(VoxelMap(0.1)));
   EXPECT_EQ(read.block_count(), 0U);

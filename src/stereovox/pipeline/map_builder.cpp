@@ -98,7 +98,7 @@ void MapBuilder::map(const LocatedFrame& frame, MapSegment& segment, StageTimes&
   if (config_.navmap.uses_faces())
     segment.wall_faces.observe(view_frame(frame.disparity, camera_, T_world_camera, frame.stamp_ns,
                                           config_.occupancy, segment.map),
-                               segment.map.floor_z_m(), config_.navmap);
+                               segment.map.floor, config_.navmap);
   times.add("occupancy", occupancy);
   times.add("navmap", watch.elapsed());
   segment.trajectory.push_back({frame.stamp_ns, T_world_camera});

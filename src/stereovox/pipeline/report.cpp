@@ -40,8 +40,11 @@ ordered_json skipped_json(std::span<const SkippedPair> skipped) {
 
 ordered_json map_json(const VoxelMap& map, double threshold) {
   const MapCounts counts = count_voxels(map, threshold);
+  const auto [lowest_floor_m, highest_floor_m] = map.floor.z_range_m();
   return {{"voxel_size_m", map.voxel_size_m()},
           {"floor_z_m", map.floor_z_m()},
+          {"lowest_floor_z_m", lowest_floor_m},
+          {"highest_floor_z_m", highest_floor_m},
           {"observed", counts.observed},
           {"occupied", counts.occupied},
           {"free", counts.free},
