@@ -87,6 +87,34 @@ TEST(FloorSurface, DoesNotClimbAStepABoxOrAWall) {
   EXPECT_TRUE(floor.is_level());
 }
 
+// The foot of a wall, or a heap: a few flat points among many.
+TEST(FloorSurface, NeedsMostOfWhatIsSeenToBeFlat) {
+  std::vector<SurfacePoint> points(20, {{1.2, 0.2, 0.08}, true});
+  points.resize(45, {{1.2, 0.2, 0.3}, false});
+  FloorSurface floor;
+  floor.observe(points, {0, 0, 1});
+  EXPECT_TRUE(floor.squares().empty());
+  points.resize(40);
+  points.resize(100, {{1.2, 0.2, 2.5}, false});  // the ceiling
+  floor.observe(points, {0, 0, 1});
+  EXPECT_EQ(floor.squares().size(), 1U);
+}
+
+TEST(SurfacePoints, AreFlatOnFloorsAndNotOnWallsOrWhereTheyMeet) {
+  const auto room_z = [](double x, double /*y*/) { return x > 3.0 ? 2.0 : 0.0; };
+  const SE3 pose = scene::level_pose(0.0, {0, 0, 0.5});
+  int flat = 0, upright = 0;
+  for (const auto& [p, is_flat] :
+       surface_points(scene::landscape(pose, room_z), scene::camera(), pose, kFarthest_m)) {
+    const bool is_on_floor = p.x() < 2.8 && p.z()<0.05, is_on_wall = p.x()> 2.9 && p.z() > 0.1;
+    flat += is_on_floor && is_flat;
+    upright += is_on_wall;
+    EXPECT_FALSE(is_on_wall && is_flat) << p.transpose();
+  }
+  EXPECT_GT(flat, 200);
+  EXPECT_GT(upright, 200);
+}
+
 TEST(FloorSurface, BeyondWhatWasSeenTheNearestHolds) {
   const FloorSurface floor = drive_over(ramp_z, 7.0);
   EXPECT_FALSE(floor.squares().contains({28, 0}));
