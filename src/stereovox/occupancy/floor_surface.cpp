@@ -39,7 +39,13 @@ struct SquareView {
 std::vector<SquareView> nearest_first(std::span<const SurfacePoint> points,
                                       const Eigen::Vector3d& camera_world) {
   std::map<Square, std::vector<SurfacePoint>> by_square;
-  for (const SurfacePoint& point : points) by_square[square_of(point.p_world)].push_back(point);
+  auto last = by_square.end();  // successive points mostly share a square
+  for (const SurfacePoint& point : points) {
+    const Square square = square_of(point.p_world);
+    if (last == by_square.end() || last->first != square)
+      last = by_square.try_emplace(square).first;
+    last->second.push_back(point);
+  }
   std::vector<SquareView> views;
   for (auto& [square, inside] : by_square)
     views.push_back(
