@@ -14,6 +14,8 @@ namespace {
 using Square = FloorSurface::Square;
 
 constexpr std::string_view kMagic = "floor 1\n";
+// No map reaches so far, and no number of a square overflows.
+constexpr int kFarthestSquare = 1 << 28;
 
 Square square_of(const Eigen::Vector3d& p) {
   return {static_cast<int>(std::floor(p.x() / FloorSurface::kSquare_m)),
@@ -279,7 +281,10 @@ FloorSurface floor_from_bytes(std::string_view bytes, double level_z_m) {
     const Square square(x, reader.number<std::int32_t>());
     const float z_m = reader.number<float>(), weight_per_m2 = reader.number<float>();
     const bool is_next = floor.squares_.empty() || floor.squares_.rbegin()->first < square;
-    if (!is_next || !std::isfinite(z_m) || !std::isfinite(weight_per_m2) || weight_per_m2 <= 0.0F)
+    const bool is_near = std::max(std::abs(std::int64_t{x}),
+                                  std::abs(std::int64_t{square.second})) <= kFarthestSquare;
+    if (!is_next || !is_near || !std::isfinite(z_m) || !std::isfinite(weight_per_m2) ||
+        weight_per_m2 <= 0.0F)
       throw std::runtime_error("the floor is damaged");
     floor.add(square, {z_m, weight_per_m2});
   }

@@ -151,6 +151,9 @@ TEST(FloorSurface, DamagedBytesAreRefused) {
   EXPECT_THROW(read("floor 9\n"), std::runtime_error);
   EXPECT_THROW(read(bytes + "x"), std::runtime_error);
   EXPECT_THROW(read(bytes.substr(0, bytes.size() - 3)), std::out_of_range);
+  std::string far = bytes;
+  far[8 + 4 + 7] = -127;  // y of the first square
+  EXPECT_THROW(read(far), std::runtime_error);
   std::string unordered = bytes;
   unordered[8 + 4 + 3] = 127;  // x of the first square
   EXPECT_THROW(read(unordered), std::runtime_error);
