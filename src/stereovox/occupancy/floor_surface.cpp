@@ -185,6 +185,7 @@ std::pair<double, double> FloorSurface::z_range_m(const Eigen::Vector2d& xy_worl
 }
 
 std::pair<double, double> FloorSurface::z_range_m() const {
+  if (is_level()) return {level_z_m_, level_z_m_};
   constexpr int kFarthest = std::numeric_limits<int>::max();
   return z_range_m({-kFarthest, -kFarthest}, {kFarthest, kFarthest});
 }

@@ -42,8 +42,9 @@ class FloorSurface {
   // A square's floor is that far from its neighbours' at most, 11 degrees: more is a step, not a
   // slope.
   static constexpr double kLargestStep_m = 0.1;
-  // As long as no square differs by more, the floor is level.
+  // As long as fewer squares differ by more, the floor is level: one may be a heap, or an error.
   static constexpr double kTolerance_m = 0.05;
+  static constexpr std::size_t kFewestSloped = 4;
 
   using Square = std::pair<int, int>;  // of (x, y) / kSquare_m
   struct Seen {
@@ -61,7 +62,7 @@ class FloorSurface {
   // T_this_other, which must keep z upright.
   void merge(const FloorSurface& other, const SE3& T_this_other);
 
-  bool is_level() const { return sloped_ == 0; }
+  bool is_level() const { return sloped_ < kFewestSloped; }
   const std::map<Square, Seen>& squares() const { return squares_; }
   // The height of a square, or of the nearest ones that were seen; the level within the tolerance,
   // and farther than 5 m from all of them.

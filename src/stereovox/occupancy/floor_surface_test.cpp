@@ -87,6 +87,18 @@ TEST(FloorSurface, DoesNotClimbAStepABoxOrAWall) {
   EXPECT_TRUE(floor.is_level());
 }
 
+TEST(FloorSurface, StaysLevelUntilSeveralSquaresDiffer) {
+  FloorSurface floor;
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_TRUE(floor.is_level()) << i;
+    EXPECT_EQ(floor.z_range_m(), std::pair(0.0, 0.0));
+    const std::vector<SurfacePoint> points(20, {{1.2 + 0.5 * i, 0.2, 0.08}, true});
+    floor.observe(points, {0, 0, 1});
+  }
+  EXPECT_FALSE(floor.is_level());
+  EXPECT_NEAR(z_at(floor, 1.7, 0.2), 0.08, 1e-6);
+}
+
 // The foot of a wall, or a heap: a few flat points among many.
 TEST(FloorSurface, NeedsMostOfWhatIsSeenToBeFlat) {
   std::vector<SurfacePoint> points(20, {{1.2, 0.2, 0.08}, true});
